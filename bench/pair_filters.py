@@ -26,6 +26,7 @@ import subprocess
 import sys
 import tempfile
 import tomllib
+from bisect import bisect_left
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from time import perf_counter
@@ -71,6 +72,22 @@ def crps(error, std):
     return std * (z * math.erf(z / math.sqrt(2)) + 2 * density - 1 / math.sqrt(math.pi))
 
 
+def earlier(time, seen, latency):
+    """Poses at each time that the camera shows `latency` seconds later, linear between rows."""
+    found = []
+    for now in time:
+        k = bisect_left(time, now + latency)
+        if latency == 0:
+            found.append(seen[k])
+        elif k == len(time) or not (seen[k] and seen[k - 1]):
+            found.append(None)
+        else:
+            share = (now + latency - time[k - 1]) / (time[k] - time[k - 1])
+            (x, y, a), (u, v, b) = seen[k - 1], seen[k]
+            found.append((x + share * (u - x), y + share * (v - y), a + share * turn(b - a)))
+    return found
+
+
 class Experiment:
     """A log with its reference and the rows that are scored."""
 
@@ -87,7 +104,8 @@ class Experiment:
             self.until = last_motion([float(row["time"]) for row in rows], self.truth, self.rho) + AFTER
         else:
             rows = table(folder / "log.csv")
-            self.truth = poses(rows, ("object_x", "object_y", "object_theta"))
+            seen = poses(rows, ("object_x", "object_y", "object_theta"))
+            self.truth = earlier([float(row["time"]) for row in rows], seen, scene["camera"].get("latency", 0.0))
             self.until = math.inf
 
     def options(self, camera_on):
@@ -168,7 +186,9 @@ def main():
     parser.add_argument("--seeds", type=int, default=1)
     parser.add_argument("--first-seed", type=int, default=0)
     parser.add_argument("--jobs", type=int, default=2)
-    parser.add_argument("--each", action="store_true", help="print every log: error, CRPS, coverage, evidence twice")
+    parser.add_argument(
+        "--each", action="store_true", help="print each log: error, CRPS, coverage, evidence; both programs"
+    )
     parser.add_argument("--camera-on", action="store_true")
     parser.add_argument("--every", type=int, default=1, help="every N-th log of a set, for a first look")
     words = sys.argv[1:]

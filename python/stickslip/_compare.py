@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Unpack
 
-from stickslip._files import experiments, load_log, load_scene, load_truth, log_in
+from stickslip._columns import Columns
+from stickslip._files import Topics, experiments, load_log, load_scene, load_truth, path_of
 from stickslip._filter import FilterOptions, filter
-from stickslip._native import Error
+from stickslip._native import Error, Scene
 from stickslip._score import score
 
 #: Options of each variant: method, use of tactile readings, and ``camera_on`` for no occlusion.
@@ -30,6 +32,8 @@ def compare(
     seeds: int = 1,
     variants: Iterable[str] = tuple(_VARIANTS),
     scene_name: str = "scene.toml",
+    scene: Mapping[str, Any] | None = None,
+    topics: Topics | None = None,
     **options: Unpack[FilterOptions],
 ) -> list[dict[str, Any]]:
     """Runs each variant on each experiment folder and scores it.
@@ -38,50 +42,105 @@ def compare(
     seeds of each particle filter, from ``seed`` on. ``variants``: ``nominal``, ``kalman``,
     ``extended_kalman``, ``particle_no_tactile``, ``particle``, ``particle_always_on`` (no
     occlusion). ``particle_no_tactile`` is left out for a log without tactile columns, and
-    ``particle_always_on`` for a log without hidden rows.
+    ``particle_always_on`` for a log without hidden rows. ``scene``: values that replace those of
+    each scene, as :meth:`Scene.replace` takes them. ``topics``: see :func:`stickslip.load_log`.
 
     ``options`` give the hidden rows; the default is ``occlude_from`` of ``truth.json``. Scores are
-    against ``truth.csv`` if it exists, else against the log's own poses.
+    against ``truth.csv`` if it exists, else against the log's own poses. ``progress`` gets finished
+    runs and all runs.
 
-    Returns a dict per run: ``folder``, ``variant``, ``seed``, and the scores of
-    :func:`stickslip.score`.
+    Returns a dict per run: ``folder``, ``variant``, ``seed``, the scores of
+    :func:`stickslip.score`, and ``warnings``, ``observed``, ``log_evidence``, ``resimulations`` and
+    ``collapses`` of :class:`stickslip.Estimate`.
     """
     chosen = list(variants)
     unknown = sorted(set(chosen) - set(_VARIANTS))
     if unknown:
         raise Error(f"variants has a `{unknown[0]}`; it may have {', '.join(_VARIANTS)}")
-    found = [inner for folder in folders for inner in experiments(Path(folder), scene_name)]
-    return [row for folder in found for row in _on(folder, chosen, seeds, scene_name, options)]
-
-
-def _on(folder: Path, variants: list[str], seeds: int, scene_name: str, options: FilterOptions) -> list[dict[str, Any]]:
-    scene = load_scene(folder / scene_name)
-    log = load_log(log_in(folder))
-    truth = load_truth(folder / "truth.csv") if (folder / "truth.csv").is_file() else None
-    known = folder / "truth.json"
-    facts = json.loads(known.read_text(encoding="utf-8")) if known.is_file() else {}
-    hiding: dict[str, Any] = {name: options.get(name) for name in ("occlude", "occlude_middle")}
-    if hiding == {"occlude": None, "occlude_middle": None}:
-        hiding["occlude"] = facts.get("occlude_from")
-    hides = any(value is not None for value in hiding.values())
+    progress = options.pop("progress", None)
+    paths = [inner for folder in folders for inner in experiments(path_of(folder, "a folder"), scene_name)]
+    read = [_Experiment.read(path, scene_name, scene or {}, topics, options) for path in paths]
+    first = options.get("seed", 0)
+    runs = [
+        (experiment, variant, seed)
+        for experiment in read
+        for variant in chosen
+        if experiment.differs(variant)
+        for seed in range(first, first + (seeds if variant.startswith("particle") else 1))
+    ]
     rows = []
-    for variant in variants:
-        if (variant == "particle_no_tactile" and "tactile_1" not in log) or (
-            variant == "particle_always_on" and not hides
-        ):
-            continue
-        own = dict(_VARIANTS[variant])
-        hidden = {} if own.pop("camera_on", False) else hiding
-        first = options.get("seed", 0)
-        for seed in range(first, first + (seeds if variant.startswith("particle") else 1)):
-            run: Any = {**options, "occlude": None, "occlude_middle": None, **hidden, **own, "seed": seed}
-            scores = score(
-                filter(log, scene, **run),
-                log,
-                scene,
-                truth=truth,
-                first_pusher_contact=facts.get("first_pusher_contact"),
-                **hiding,
-            )
-            rows.append({"folder": str(folder), "variant": variant, "seed": seed, **scores})
+    for done, (experiment, variant, seed) in enumerate(runs):
+        try:
+            rows.append(experiment.run(variant, seed, options))
+        except Error as error:
+            raise Error(f"{experiment.folder}: {error}") from error
+        if progress is not None:
+            progress(done + 1, len(runs))
     return rows
+
+
+@dataclass(frozen=True)
+class _Experiment:
+    """An experiment folder, read, and its hidden rows."""
+
+    folder: Path
+    scene: Scene
+    log: Columns
+    truth: Columns | None
+    facts: dict[str, Any]
+    hiding: FilterOptions
+
+    @classmethod
+    def read(
+        cls,
+        folder: Path,
+        scene_name: str,
+        values: Mapping[str, Any],
+        topics: Topics | None,
+        options: FilterOptions,
+    ) -> _Experiment:
+        scene = load_scene(folder / scene_name)
+        scene = scene.replace(**values) if values else scene
+        log = load_log(folder, scene=scene, topics=topics)
+        truth = load_truth(folder / "truth.csv") if (folder / "truth.csv").is_file() else None
+        known = folder / "truth.json"
+        facts = json.loads(known.read_text(encoding="utf-8")) if known.is_file() else {}
+        hiding = FilterOptions(occlude=options.get("occlude"), occlude_middle=options.get("occlude_middle"))
+        if hiding == {"occlude": None, "occlude_middle": None}:
+            hiding["occlude"] = facts.get("occlude_from")
+        return cls(folder, scene, log, truth, facts, hiding)
+
+    def differs(self, variant: str) -> bool:
+        """Returns False if the variant is the same as another one here."""
+        hides = any(value is not None for value in self.hiding.values())
+        return (variant != "particle_no_tactile" or "tactile_1" in self.log) and (
+            variant != "particle_always_on" or hides
+        )
+
+    def run(self, variant: str, seed: int, options: FilterOptions) -> dict[str, Any]:
+        """Runs a variant and scores it."""
+        own = dict(_VARIANTS[variant])
+        seen = {"occlude": None, "occlude_middle": None}
+        hidden = seen if own.pop("camera_on", False) else self.hiding
+        run: Any = {**options, **hidden, **own, "seed": seed}
+        estimate = filter(self.log, self.scene, **run)
+        scores = score(
+            estimate,
+            self.log,
+            self.scene,
+            truth=self.truth,
+            first_pusher_contact=self.facts.get("first_pusher_contact"),
+            occlude=self.hiding.get("occlude"),
+            occlude_middle=self.hiding.get("occlude_middle"),
+        )
+        return {
+            "folder": str(self.folder),
+            "variant": variant,
+            "seed": seed,
+            **scores,
+            "warnings": list(estimate.warnings),
+            "observed": estimate.observed,
+            "log_evidence": estimate.log_evidence,
+            "resimulations": estimate.resimulations,
+            "collapses": estimate.collapses,
+        }

@@ -4,19 +4,24 @@ from __future__ import annotations
 
 import operator
 import os
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, Literal, TypedDict, Unpack
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Literal, TypeAlias, TypedDict, Unpack
 
 import numpy as np
 from numpy.typing import NDArray
 
 from stickslip import _native
 from stickslip._columns import Columns, Log
+from stickslip._estimate import Estimate
 from stickslip._files import log_of, scene_of
 from stickslip._native import Error, Scene
 
 if TYPE_CHECKING:
     from stickslip._native import RunArguments
+
+
+#: Function of what is done and of the total. An exception in it ends the call.
+Progress: TypeAlias = Callable[[int, int], object]
 
 
 class FilterOptions(TypedDict, total=False):
@@ -43,19 +48,26 @@ class FilterOptions(TypedDict, total=False):
     occlude: int | tuple[int, int | None] | None
     #: Length of an occlusion about the middle of the log (s).
     occlude_middle: float | None
+    #: True to run also if units, frames or columns are found to be wrong; False by default.
+    force: bool
     #: Number of threads; None: as many as help. Results do not depend on it.
     threads: int | None
+    #: Called with the finished rows and all rows, some twenty times a second, and at the end.
+    progress: Progress | None
 
 
-def filter(log: Log, scene: Scene | str | os.PathLike[str], **options: Unpack[FilterOptions]) -> Columns:
+def filter(log: Log, scene: Scene | str | os.PathLike[str], **options: Unpack[FilterOptions]) -> Estimate:
     """Tracks the object of a log.
 
-    ``log``: path of ``log.csv`` or ``log.mcap``, dict of columns, or data frame, with the columns
-    of ``log.csv`` (see :func:`stickslip.load_log`). ``scene``: a scene, or the path of its file.
-    ``options``: see :class:`FilterOptions`.
+    ``log``: path of a log (see :func:`stickslip.load_log`), dict of columns, or data frame, with
+    the columns of ``log.csv``. NaN, None and masked values are missing measurements. ``scene``: a
+    scene, or the path of its file. ``options``: see :class:`FilterOptions`.
+
+    Reasons to doubt the estimate are issued as :class:`stickslip.Warning`, as the program prints
+    them, and kept as ``warnings``. Ctrl-C ends the call.
 
     Returns the columns of ``estimate.csv``, each (rows,), one row per log row, with the bits of the
-    program's file. NaN: the method has no value.
+    program's file, and facts of the run (see :class:`Estimate`). NaN: the method has no value.
 
     - ``time`` (s)
     - pose: ``x``, ``y`` (m), ``theta`` (rad, unwrapped)
@@ -73,9 +85,12 @@ def filter(log: Log, scene: Scene | str | os.PathLike[str], **options: Unpack[Fi
     - probability of each contact mode: ``stick_pusher``, ``left_pusher``, ``right_pusher``,
       ``stick_1``, ...
 
-    Raises :class:`stickslip.Error` if log, scene or options are invalid.
+    Raises :class:`stickslip.Error` if log, scene or options are invalid, and without ``force`` also
+    if units, frames or columns are found to be wrong.
     """
-    return _native.filter(log_of(log), scene_of(scene), arguments(options))
+    known = scene_of(scene)
+    columns, facts = _native.filter(log_of(log, known), known, arguments(options), options.get("progress"))
+    return Estimate(columns, facts)
 
 
 def particles(
@@ -101,8 +116,10 @@ def particles(
     """
     if options.get("method", "particle") != "particle":
         raise Error(f"method is `{options.get('method')}`; only `particle` has particles")
-    wanted = None if rows is None else [int(row) for row in rows]
-    kept, columns = _native.particles(log_of(log), scene_of(scene), arguments(options), wanted)
+    known = scene_of(scene)
+    table = log_of(log, known)
+    wanted = None if rows is None else _places(rows, table)
+    kept, columns = _native.particles(table, known, arguments(options), wanted, options.get("progress"))
     shape = (len(kept), -1 if len(kept) else 0)
     return {"row": kept.astype(np.float64)} | {name: column.reshape(shape) for name, column in columns.items()}
 
@@ -129,7 +146,8 @@ def samples(
     ``arviz.from_dict({"posterior": samples})``, older versions by
     ``arviz.from_dict(posterior=samples)``.
     """
-    columns, scene = log_of(log), scene_of(scene)
+    scene = scene_of(scene)
+    columns = log_of(log, scene)
     seed = options.get("seed", 0)
     per_chain: list[dict[str, NDArray[np.float64]]] = []
     for chain in range(chains):
@@ -171,14 +189,27 @@ def _systematic(weights: NDArray[np.float64], draws: int | None, seed: tuple[int
     return rng.permutation(picked)
 
 
+def _places(rows: Sequence[int], log: Columns) -> list[int]:
+    """Returns the numbers of rows of a log; refuses others."""
+    count = len(next(iter(log.values())))
+    try:
+        places = [operator.index(row) for row in rows]
+    except TypeError as error:
+        raise Error(f"rows is {rows!r}; give a list of row numbers") from error
+    wrong = [place for place in places if not 0 <= place < count]
+    if wrong:
+        raise Error(f"rows has {wrong[0]}; the log's rows go from 0 to {count - 1}")
+    return places
+
+
 def arguments(options: FilterOptions) -> RunArguments:
     """Returns the options with their defaults, as the library takes them."""
     unknown = sorted(set(options) - set(FilterOptions.__annotations__))
     if "mode" in unknown:
-        raise TypeError("option `mode` is called `model`: `robust` (formerly contact) or `paper`")
+        raise Error("option `mode` is called `model`: `robust` (formerly contact) or `paper`")
     if unknown:
         known = ", ".join(FilterOptions.__annotations__)
-        raise TypeError(f"there is no option `{unknown[0]}`; there are {known}")
+        raise Error(f"there is no option `{unknown[0]}`; there are {known}")
     return {
         "method": options.get("method", "particle"),
         "model": options.get("model", "robust"),
@@ -189,6 +220,7 @@ def arguments(options: FilterOptions) -> RunArguments:
         "substeps": options.get("substeps"),
         "occlude": _rows(options.get("occlude")),
         "occlude_middle": options.get("occlude_middle"),
+        "force": options.get("force", False),
         "threads": options.get("threads"),
     }
 
@@ -199,7 +231,8 @@ def _rows(occlude: int | tuple[int, int | None] | None) -> tuple[int, int | None
         return None
     rule = f"occlude is {occlude!r}; give the first hidden row, from 0, or that and the first visible one after it"
     try:
-        first, last = occlude if isinstance(occlude, tuple) else (operator.index(occlude), None)
+        first, last = occlude if isinstance(occlude, tuple) else (occlude, None)
+        first, last = operator.index(first), None if last is None else operator.index(last)
     except (TypeError, ValueError) as error:
         raise Error(rule) from error
     if first < 0 or (last is not None and last <= first):

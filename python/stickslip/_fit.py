@@ -14,12 +14,13 @@ from numpy.typing import NDArray
 
 from stickslip import _native
 from stickslip._columns import Columns, Log
-from stickslip._files import experiments, load_log, load_scene, log_in, log_of
-from stickslip._native import Scene
+from stickslip._files import Topics, experiments, load_log, load_scene, log_of, scene_of
+from stickslip._filter import Progress
+from stickslip._native import Error, Scene
 from stickslip._simulate import Simulation
 
 #: A push: its experiment folder, a simulation, or a scene and a log.
-Push = str | os.PathLike[str] | Simulation | tuple[Scene, Log]
+Push = str | os.PathLike[str] | Simulation | tuple[Scene | str | os.PathLike[str], Log]
 
 
 @dataclass(frozen=True)
@@ -55,6 +56,8 @@ class Fit:
     #: constant of material or support that the k-th value imitates, with its 90 % interval, or
     #: None.
     result: dict[str, Any]
+    #: Reasons to doubt the fit, each with the push that it is about.
+    warnings: tuple[str, ...]
 
 
 def fit(
@@ -64,7 +67,9 @@ def fit(
     seed: int = 0,
     folds: int | None = None,
     scene_name: str = "scene.toml",
+    topics: Topics | None = None,
     threads: int | None = None,
+    progress: Progress | None = None,
 ) -> Fit:
     """Learns unknown scene parameters from many pushes of one object on one table.
 
@@ -74,20 +79,29 @@ def fit(
     ``mu_s``, ``mu_p``, ``mu_f``, ``tripod_radius``, ``centre_of_friction``, ``outline_scale``,
     ``outline_offset``, ``pusher_offset``, ``latency``. ``folds``: number of parts in the
     cross-validation, each predicted by a fit to the others; 0: none; None: 4, or 2 for fewer than 8
-    pushes, or 0 for fewer than 4.
+    pushes, or 0 for fewer than 4. ``topics``: see :func:`stickslip.load_log`. ``progress``: gets the
+    vectors of parameters tried and an upper limit of them, at which it ends.
 
-    The numbers have the bits of the program's ``fit.json``, on any number of threads.
+    Reasons to doubt the fit are issued as :class:`stickslip.Warning` and kept as ``warnings``.
+    Ctrl-C ends the call. The numbers have the bits of the program's ``fit.json``, on any number of threads.
 
     Raises :class:`stickslip.Error` if a push or a name is invalid.
     """
     given = [pushes] if isinstance(pushes, str | os.PathLike) else list(pushes)
-    read = [push for item in given for push in _pushes(item, scene_name)]
-    options = {"free": list(free), "seed": seed, "folds": folds, "threads": threads}
-    learnt, validation, draws, text = _native.fit(
-        [(f"push {k}" if name is None else name, scene, log) for k, (name, scene, log) in enumerate(read)], options
+    read = [push for item in given for push in _pushes(item, scene_name, topics)]
+    options = {
+        "free": [free] if isinstance(free, str) else list(free),
+        "seed": seed,
+        "folds": folds,
+        "threads": threads,
+    }
+    learnt, validation, draws, text, warnings = _native.fit(
+        [(f"push {k}" if name is None else name, scene, log) for k, (name, scene, log) in enumerate(read)],
+        options,
+        progress,
     )
     result = json.loads(learnt)
-    result["cross_validation"] = json.loads(validation)
+    result |= {"warnings": warnings, "cross_validation": json.loads(validation)}
     learnt_values = {fitted["name"]: fitted for fitted in result["parameters"]}
 
     def by_name(key: str) -> dict[str, Any]:
@@ -105,16 +119,21 @@ def fit(
         cross_validation=result["cross_validation"],
         scene=Scene(text, read[0][1].name),
         result=result,
+        warnings=tuple(warnings),
     )
 
 
-def _pushes(item: Push, scene_name: str) -> list[tuple[str | None, Scene, Columns]]:
+def _pushes(item: Push, scene_name: str, topics: Topics | None) -> list[tuple[str | None, Scene, Columns]]:
     if isinstance(item, Simulation):
         return [(None, item.scene, item.log)]
-    if isinstance(item, tuple):
-        scene, log = item
-        return [(None, scene, log_of(log))]
+    if isinstance(item, tuple) and len(item) == 2:
+        scene = scene_of(item[0])
+        return [(None, scene, log_of(item[1], scene))]
+    if not isinstance(item, str | os.PathLike):
+        raise Error(f"a push is {item!r}; give a folder, a simulation, or a pair of a scene and a log")
+    folders = experiments(Path(item), scene_name)
+    scenes = [load_scene(folder / scene_name) for folder in folders]
     return [
-        (folder.name, load_scene(folder / scene_name), load_log(log_in(folder)))
-        for folder in experiments(Path(item), scene_name)
+        (folder.name, scene, load_log(folder, scene=scene, topics=topics))
+        for folder, scene in zip(folders, scenes, strict=True)
     ]

@@ -1,6 +1,8 @@
 """Native library of the package. Arguments are checked, not converted."""
 
-from collections.abc import Mapping, Sequence
+import os
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
 from typing import Any, TypedDict, final
 
 import numpy as np
@@ -11,12 +13,29 @@ __version__: str
 class Error(ValueError):
     """Invalid input: the value found, the rule, and the next step."""
 
+class Warning(UserWarning):
+    """Reason to doubt a result, with the next step."""
+
 @final
 class Scene:
     """Content of scene.toml: scene, sensors and filter settings."""
 
     def __new__(cls, text: str, name: str = "scene.toml") -> Scene:
         """Reads the text of a scene file; ``name`` is shown in errors."""
+    @staticmethod
+    def from_numbers(**tables: Any) -> Scene:
+        """Makes a scene of the tables of ``scene.toml``, as dicts of numbers, texts, lists and arrays.
+
+        ``Scene.from_numbers(gravity=9.81, object={"mass": 0.5, "shape": [...]}, ...)``. Errors are
+        those of the reader; ``text`` is the file.
+        """
+    def replace(self, **values: Any) -> Scene:
+        """Returns the scene with other values; comments and layout of ``text`` stay.
+
+        Names: ``mu_s``, ``mu_p``, ``mu_f``, ``d_tri`` (m); tables of the file with a dict of the
+        keys to change, as ``camera={"latency": 0.02}``; ways of keys, as
+        ``**{"pusher.stall_force": 20.0}``. None removes a key. Errors are those of the reader.
+        """
     @property
     def text(self) -> str:
         """Text of the file."""
@@ -46,6 +65,7 @@ class RunArguments(TypedDict):
     substeps: int | None
     occlude: tuple[int, int | None] | None
     occlude_middle: float | None
+    force: bool
     threads: int | None
 
 @final
@@ -54,27 +74,42 @@ class Tracker:
     def push(self, row: Mapping[str, Any]) -> dict[str, float]: ...
     def estimate(self) -> dict[str, float]: ...
     @property
+    def warnings(self) -> list[str]: ...
+    @property
+    def observed(self) -> dict[str, bool]: ...
+    @property
+    def log_evidence(self) -> float: ...
+    @property
+    def resimulations(self) -> int: ...
+    @property
     def collapses(self) -> int: ...
 
-def read_log(data: bytes, name: str) -> dict[str, NDArray[np.float64]]: ...
-def write_log(columns: dict[str, NDArray[np.float64]]) -> bytes: ...
+_Columns = dict[str, NDArray[np.float64]]
+_Progress = Callable[[int, int], object]
+
+def read_log(path: os.PathLike[str], scene: Scene | None = None, topics: Sequence[str] = ()) -> _Columns: ...
+def write_log(columns: _Columns) -> bytes: ...
+def bag_info(path: os.PathLike[str]) -> str: ...
+def log_files(path: os.PathLike[str]) -> list[Path]: ...
+def check(log: _Columns, scene: Scene) -> list[tuple[str, str, str, str | None]]: ...
 def filter(
-    log: dict[str, NDArray[np.float64]], scene: Scene, options: RunArguments
-) -> dict[str, NDArray[np.float64]]: ...
+    log: _Columns, scene: Scene, options: RunArguments, progress: _Progress | None = None
+) -> tuple[_Columns, dict[str, Any]]: ...
 def particles(
-    log: dict[str, NDArray[np.float64]],
+    log: _Columns,
     scene: Scene,
     options: RunArguments,
     rows: Sequence[int] | None = None,
-) -> tuple[NDArray[np.int64], dict[str, NDArray[np.float64]]]: ...
+    progress: _Progress | None = None,
+) -> tuple[NDArray[np.int64], _Columns]: ...
 def fit(
-    pushes: Sequence[tuple[str, Scene, dict[str, NDArray[np.float64]]]], options: Mapping[str, Any]
-) -> tuple[str, str, dict[str, NDArray[np.float64]], str]: ...
+    pushes: Sequence[tuple[str, Scene, _Columns]], options: Mapping[str, Any], progress: _Progress | None = None
+) -> tuple[str, str, _Columns, str, list[str]]: ...
 def program(words: Sequence[str]) -> int:
     """Runs the program with the words after its name on a command line; returns its exit code."""
 
-def rollout(scene: Scene, h: float, arrays: Mapping[str, Any], threads: int | None = None) -> dict[str, Any]: ...
+def rollout(scene: Scene, arguments: Mapping[str, Any], progress: _Progress | None = None) -> dict[str, Any]: ...
 def simulate(
-    scene: Scene, options: Mapping[str, Any]
-) -> tuple[dict[str, NDArray[np.float64]], dict[str, NDArray[np.float64]], str]: ...
-def score(estimate: dict[str, NDArray[np.float64]], on: Mapping[str, Any]) -> dict[str, float]: ...
+    scene: Scene, options: Mapping[str, Any], progress: _Progress | None = None
+) -> tuple[_Columns, _Columns, str, int]: ...
+def score(estimate: _Columns, on: Mapping[str, Any]) -> dict[str, float]: ...

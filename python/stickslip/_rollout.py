@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from typing import TypedDict
 
@@ -9,6 +10,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stickslip import _native
+from stickslip._columns import numbers
+from stickslip._files import scene_of
+from stickslip._filter import Progress
 from stickslip._native import Error, Scene
 
 #: Names of the friction parameters, in the order of arrays.
@@ -31,7 +35,7 @@ class Rollout(TypedDict):
 
 
 def rollout(
-    scene: Scene,
+    scene: Scene | str | os.PathLike[str],
     states: ArrayLike,
     pusher: ArrayLike,
     friction: Mapping[str, ArrayLike] | None = None,
@@ -39,6 +43,7 @@ def rollout(
     h: float = 1.0 / 30.0,
     threads: int | None = None,
     out: Rollout | None = None,
+    progress: Progress | None = None,
 ) -> Rollout:
     """Simulates N pushes over T steps of ``h`` seconds by the certified contact dynamics.
 
@@ -47,21 +52,22 @@ def rollout(
     (T + 1, 3) for all: x, y (m), theta (rad). The pusher moves straight between them, and yields if
     the scene has a stall force. ``friction``: ``mu_s``, ``mu_p``, ``mu_f``, ``d_tri`` (m), each a
     number or (N,); the scene's values by default. ``out``: a rollout of the same shape, whose poses
-    and twists are overwritten.
+    and twists are overwritten. ``progress``: gets the finished trajectories and all trajectories.
 
     The interpreter's lock is released. C-ordered float64 arrays are read in place, and results are
     written directly into the returned arrays. A trajectory depends only on its own start, friction
-    and pusher: the bits are the same for any N and any number of threads.
+    and pusher: the bits are the same for any N and any number of threads. Ctrl-C ends the call.
 
     Raises :class:`stickslip.Error` if shapes do not match or a number is out of range.
     """
-    start = _array(states, "states")
+    scene = scene_of(scene)
+    start = numbers(states, "states")
     if start.ndim != 2 or start.shape[1] not in (3, 6):
         raise Error(f"states has the shape {start.shape}; it must be (N, 6), or (N, 3) for poses at rest")
     count = len(start)
     if start.shape[1] == 3:
         start = np.hstack([start, np.zeros((count, 3))])
-    pushers = _array(pusher, "pusher")
+    pushers = numbers(pusher, "pusher")
     if pushers.ndim == 2:
         pushers = pushers[np.newaxis]
     if pushers.ndim != 3 or pushers.shape[2] != 3 or len(pushers) not in (1, count) or pushers.shape[1] < 2:
@@ -70,17 +76,17 @@ def rollout(
             "with T at least 1"
         )
     shape = (count, pushers.shape[1], 3)
-    pose, twist = (np.empty(shape), np.empty(shape)) if out is None else (out["pose"], out["twist"])
-    if pose.shape != shape or twist.shape != shape:
-        raise Error(f"out is of another shape than this rollout's {shape}")
-    arrays = {
+    pose, twist = (np.empty(shape), np.empty(shape)) if out is None else _overwritten(out, shape, start, pushers)
+    given = {
+        "h": h,
+        "threads": threads,
         "states": start,
         "friction": _frictions(scene, friction or {}, count),
         "pushers": pushers,
         "poses": pose,
         "twists": twist,
     }
-    ends = _native.rollout(scene, h, arrays, threads)
+    ends = _native.rollout(scene, given, progress)
     return {
         "pose": pose,
         "twist": twist,
@@ -90,11 +96,24 @@ def rollout(
     }
 
 
-def _array(values: ArrayLike, name: str) -> NDArray[np.float64]:
-    try:
-        return np.ascontiguousarray(values, dtype=np.float64)
-    except (TypeError, ValueError) as error:
-        raise Error(f"{name} holds something that is no number ({error})") from error
+def _overwritten(
+    out: Rollout, shape: tuple[int, int, int], *inputs: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Returns the poses and twists of an earlier rollout, if they can take the numbers of this one."""
+    arrays: list[NDArray[np.float64]] = []
+    for name in ("pose", "twist"):
+        array: object = out.get(name)
+        if not isinstance(array, np.ndarray) or array.dtype != np.float64 or array.shape != shape:
+            found = (
+                f"{array.dtype} of the shape {array.shape}" if isinstance(array, np.ndarray) else type(array).__name__
+            )
+            raise Error(f"out: `{name}` is {found}; it must be float64 of this rollout's shape {shape}")
+        if not (array.flags.c_contiguous and array.flags.aligned and array.flags.writeable):
+            raise Error(f"out: `{name}` must be writable, aligned and in C order; give the result of a rollout")
+        if any(np.may_share_memory(array, other) for other in (*arrays, *inputs)):
+            raise Error(f"out: `{name}` has memory in common with another array; give arrays of their own")
+        arrays.append(array)
+    return arrays[0], arrays[1]
 
 
 def _frictions(scene: Scene, given: Mapping[str, ArrayLike], count: int) -> NDArray[np.float64]:
@@ -107,7 +126,7 @@ def _frictions(scene: Scene, given: Mapping[str, ArrayLike], count: int) -> NDAr
         raise Error("friction has a `d_tri`, but the scene's feet are known; leave it out")
     friction = np.empty((count, len(FRICTION)))
     for k, name in enumerate(FRICTION):
-        values = _array(given[name], name) if name in given else np.nan_to_num(nominal[name])
+        values = numbers(given[name], f"friction: `{name}`") if name in given else np.nan_to_num(nominal[name])
         if np.shape(values) not in ((), (1,), (count,)):
             raise Error(f"friction: `{name}` has the shape {np.shape(values)}; it must be a number or ({count},)")
         if not np.all((values >= 0) & np.isfinite(values)):

@@ -8,7 +8,7 @@ from typing import Any
 
 from stickslip import _native
 from stickslip._columns import Log, columns_of
-from stickslip._files import log_of, scene_of
+from stickslip._files import load_truth, log_of, scene_of
 from stickslip._filter import FilterOptions, arguments
 from stickslip._native import Scene
 
@@ -18,7 +18,7 @@ def score(
     log: Log,
     scene: Scene | str | os.PathLike[str],
     *,
-    truth: Mapping[str, Any] | None = None,
+    truth: Mapping[str, Any] | str | os.PathLike[str] | None = None,
     occlude: int | tuple[int, int | None] | None = None,
     occlude_middle: float | None = None,
     first_pusher_contact: int | None = None,
@@ -26,8 +26,9 @@ def score(
 ) -> dict[str, float]:
     """Scores an estimate against ``truth`` or, without it, against the log's own poses.
 
-    ``truth``: columns ``time``, ``x``, ``y``, ``theta``. The log's poses include the hidden ones.
-    ``occlude``, ``occlude_middle``: the rows that were hidden, as in :func:`stickslip.filter`.
+    ``truth``: columns ``time``, ``x``, ``y``, ``theta``, or the path of ``truth.csv``. The log's
+    poses include the hidden ones. ``occlude``, ``occlude_middle``: the rows that were hidden, as in
+    :func:`stickslip.filter`.
     ``first_pusher_contact``: row of the first contact, if known. ``virtual_radius``: weight of an
     angle (m), by default the object's radius of gyration.
 
@@ -39,11 +40,14 @@ def score(
     - ``spread_occluded_mm``: expected ``wmse_occluded_mm`` if the standard deviations are correct
     - ``final_error_mm`` and ``final_error_deg``: errors at the end
     """
+    if isinstance(truth, str | os.PathLike):
+        truth = load_truth(truth)
+    known = scene_of(scene)
     return _native.score(
         columns_of(estimate, "the estimate"),
         {
-            "log": log_of(log),
-            "scene": scene_of(scene),
+            "log": log_of(log, known),
+            "scene": known,
             "truth": None if truth is None else columns_of(truth, "the truth"),
             "options": arguments(FilterOptions(occlude=occlude, occlude_middle=occlude_middle)),
             "first_pusher_contact": first_pusher_contact,

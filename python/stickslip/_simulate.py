@@ -13,7 +13,10 @@ import numpy as np
 
 from stickslip import _native
 from stickslip._columns import Columns
+from stickslip._files import scene_of
+from stickslip._filter import Progress
 from stickslip._native import Error, Scene
+from stickslip._warnings import warn
 
 
 @dataclass(frozen=True)
@@ -44,25 +47,28 @@ class Simulation:
 
 
 def simulate(
-    scene: Scene,
+    scene: Scene | str | os.PathLike[str],
     *,
     physics: Literal["testbed", "model"] = "testbed",
     seed: int = 0,
     rate: float = 30.0,
     friction: Mapping[str, float] | None = None,
+    progress: Progress | None = None,
 ) -> Simulation:
     """Simulates the experiment that the scene's ``[start]`` describes.
 
     ``physics``: ``testbed``, a rig with compliant contacts, uneven friction and a lagging drive, or
     ``model``, the filter's own contact dynamics without noise. ``rate``: frames per second (Hz).
     ``friction``: true ``mu_s``, ``mu_p``, ``mu_f``, ``d_tri`` (m); the scene's values by default.
+    ``progress``: gets the finished frames and all frames.
     """
     true = dict(friction or {})
     unknown = sorted(set(true) - {"mu_s", "mu_p", "mu_f", "d_tri"})
     if unknown:
         raise Error(f"friction has a `{unknown[0]}`; it may have mu_s, mu_p, mu_f, d_tri")
-    log, truth, facts = _native.simulate(
-        scene,
+    known = scene_of(scene)
+    log, truth, facts, unsolved = _native.simulate(
+        known,
         {
             "physics": physics,
             "seed": seed,
@@ -72,5 +78,8 @@ def simulate(
             "mu_f": true.get("mu_f"),
             "d_tri": true.get("d_tri"),
         },
+        progress,
     )
-    return Simulation(scene, log, truth, json.loads(facts))
+    if unsolved:
+        warn([f"{unsolved} steps have no certified solution"])
+    return Simulation(known, log, truth, json.loads(facts))

@@ -9,9 +9,9 @@ from typing import Any, Literal, TypedDict
 import numpy as np
 
 from stickslip import _native
-from stickslip._columns import Log
+from stickslip._columns import Log, is_missing, numbers
 from stickslip._files import log_of, scene_of
-from stickslip._native import Scene
+from stickslip._native import Error, Scene
 
 #: Columns of a log with the covariance of the object's pose.
 COVARIANCE = (
@@ -45,9 +45,10 @@ class Row(TypedDict):
 class Tracker:
     """Particle filter that takes one row at a time, on the caller's thread.
 
-    Its estimates have the bits of ``stickslip.filter(..., causal=True)``. ``late``: largest delay
-    of a row behind the latest one at which its object pose counts (s). The particles keep their
-    poses for this time.
+    Threads that use one tracker wait for their turns. A new reason to doubt the estimates is issued
+    as :class:`stickslip.Warning`. Its estimates have the bits of
+    ``stickslip.filter(..., causal=True)``. ``late``: largest delay of a row behind the latest one at
+    which its object pose counts (s). The particles keep their poses for this time.
 
     >>> tracker = stickslip.Tracker(scene, particles=500)  # doctest: +SKIP
     >>> estimate = tracker.push(0.033, object=(0.1, 0.0, 0.0), pusher=(0.07, 0.0, 0.0))  # doctest: +SKIP
@@ -85,7 +86,7 @@ class Tracker:
         force: Sequence[float] | None = None,
         object_covariance: Sequence[float] | None = None,
     ) -> dict[str, float]:
-        """Takes the measurements at ``time`` (s); None is a missing measurement.
+        """Takes the measurements at ``time`` (s); None and masked values are missing.
 
         ``object``, ``pusher``: poses (m, m, rad). ``tactile``: readings 0 or 1, sensor k on fixel
         k. ``force``: force of the pusher on the object (N). ``object_covariance``: variances of x,
@@ -98,13 +99,17 @@ class Tracker:
 
         Raises :class:`stickslip.Error` if the row is invalid. The tracker is then unchanged.
         """
+        try:
+            readings = [None if is_missing(reading) else reading for reading in tactile]
+        except TypeError as error:
+            raise Error(f"tactile is {tactile!r}; give a list of readings, sensor k on fixel k") from error
         row = {
             "time": time,
-            "object": object,
-            "object_covariance": object_covariance,
-            "pusher": pusher,
-            "tactile": list(tactile),
-            "force": force,
+            "object": _measured(object, "object"),
+            "object_covariance": _measured(object_covariance, "object_covariance"),
+            "pusher": _measured(pusher, "pusher"),
+            "tactile": readings,
+            "force": _measured(force, "force"),
         }
         return self._tracker.push(row)
 
@@ -114,9 +119,39 @@ class Tracker:
         return self._tracker.estimate()
 
     @property
+    def warnings(self) -> tuple[str, ...]:
+        """Reasons to doubt the estimates so far, each with the next step."""
+        return tuple(self._tracker.warnings)
+
+    @property
+    def observed(self) -> dict[str, bool]:
+        """True for each friction parameter that the rows so far identify."""
+        return self._tracker.observed
+
+    @property
+    def log_evidence(self) -> float:
+        """ln of the evidence of the rows so far, up to a constant of the rows."""
+        return self._tracker.log_evidence
+
+    @property
+    def resimulations(self) -> int:
+        """Number of re-simulations of the steps since an occlusion began."""
+        return self._tracker.resimulations
+
+    @property
     def collapses(self) -> int:
         """Number of rows at which no particle explained the camera's pose and all were resampled."""
         return self._tracker.collapses
+
+
+def _measured(values: Any, name: str) -> list[float] | None:
+    """Returns the numbers of a measurement, None if it is missing."""
+    if is_missing(values):
+        return None
+    found = numbers(values, name)
+    if found.ndim != 1:
+        raise Error(f"{name} is {values!r}; give its numbers in a list")
+    return found.tolist()  # type: ignore[no-any-return]
 
 
 def rows(log: Log) -> Iterator[Row]:

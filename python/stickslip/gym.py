@@ -13,6 +13,7 @@ from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
+from stickslip._columns import numbers
 from stickslip._native import Error, Scene
 from stickslip._outline import outlines
 from stickslip._rollout import rollout
@@ -98,7 +99,7 @@ class PushEnv(VectorEnv[NDArray[np.float32], NDArray[np.float32], NDArray[Any]])
         self, actions: NDArray[np.float32]
     ) -> tuple[NDArray[np.float32], NDArray[Any], NDArray[Any], NDArray[Any], dict[str, Any]]:
         """Moves every pusher for ``frames`` steps."""
-        share = np.asarray(actions, dtype=np.float64)
+        share = numbers(actions, "actions")
         if share.shape != (self.num_envs, 2) or not np.isfinite(share).all():
             raise Error(f"actions has the shape {share.shape}; it must be ({self.num_envs}, 2), all finite")
         fresh = self._over.copy()

@@ -14,6 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from stickslip._columns import numbers
+from stickslip._filter import Progress
 from stickslip._native import Error, Scene
 from stickslip._outline import outlines
 from stickslip._rollout import FRICTION, rollout
@@ -42,7 +44,7 @@ class Outcome:
 
     def distance(self, goal: ArrayLike) -> NDArray[np.float64]:
         """Returns the RMS distance (m) to ``goal`` (m, m, rad) over the frictions (N,)."""
-        away = self.pose - np.asarray(goal, dtype=np.float64)
+        away = self.pose - numbers(goal, "goal")
         turn = np.angle(np.exp(1j * away[..., 2]))
         square = away[..., 0] ** 2 + away[..., 1] ** 2 + (self.radius * turn) ** 2
         return np.asarray(np.sqrt(square.mean(axis=1)))
@@ -78,6 +80,7 @@ def predict(
     h: float = 1.0 / 30.0,
     gives_way: float = 1e-3,
     threads: int | None = None,
+    progress: Progress | None = None,
 ) -> Outcome:
     """Simulates every push under every friction.
 
@@ -85,13 +88,13 @@ def predict(
     :func:`stickslip.particles`. ``pushes``: poses of the pusher (N, T + 1, 3), a step of ``h`` (s)
     apart. ``friction``: ``mu_s``, ``mu_p``, ``mu_f``, ``d_tri`` (m), each (K,), as from
     :func:`prior` or :func:`stickslip.samples`; the scene's by default. ``gives_way``: lag of the
-    pusher (m) above which a push counts as jammed.
+    pusher (m) above which a push counts as jammed. ``progress``: see :func:`stickslip.rollout`.
     """
-    paths = np.ascontiguousarray(pushes, dtype=np.float64)
+    paths = numbers(pushes, "pushes")
     if paths.ndim != 3 or paths.shape[2] != 3 or paths.shape[1] < 2:
         raise Error(f"pushes has the shape {paths.shape}; it must be (N, T + 1, 3)")
-    values = {name: np.atleast_1d(np.asarray(value, dtype=np.float64)) for name, value in (friction or {}).items()}
-    starts = np.atleast_2d(np.asarray(pose, dtype=np.float64))
+    values = {name: np.atleast_1d(numbers(value, name)) for name, value in (friction or {}).items()}
+    starts = np.atleast_2d(numbers(pose, "pose"))
     draws = max([len(starts), *(len(value) for value in values.values())])
     starts = np.broadcast_to(starts, (draws, 3))
     count = len(paths)
@@ -102,6 +105,7 @@ def predict(
         {name: np.tile(np.broadcast_to(value, draws), count) for name, value in values.items()},
         h=h,
         threads=threads,
+        progress=progress,
     )
     jammed = (result["unsolved"] > 0) | (result["most_pusher_lag"] > gives_way)
     return Outcome(
@@ -135,7 +139,7 @@ def straight_pushes(
     """
     if not (count > 0 and length > 0 and speed > 0 and h > 0):
         raise Error("count, length, speed and h must be above 0")
-    x, y, _ = np.asarray(pose, dtype=np.float64)
+    x, y, _ = numbers(pose, "pose")
     bodies = outlines(scene)
     reach = _radius(bodies.object)
     away = reach + _radius(bodies.pusher) + _CLEARANCE

@@ -14,7 +14,7 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Polygon
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip._columns import Log
+from stickslip._columns import Log, numbers
 from stickslip._files import log_of
 from stickslip._native import Scene
 from stickslip._outline import Polygons, outlines, placed
@@ -58,7 +58,7 @@ def poses(
     bodies = outlines(scene)
     for fixel in bodies.fixels:
         _draw(ax, fixel, color=_GREY, fill=True)
-    pose = np.column_stack([np.asarray(estimate[name], dtype=np.float64) for name in ("x", "y", "theta")])
+    pose = np.column_stack([numbers(estimate[name], name) for name in ("x", "y", "theta")])
     seen = np.flatnonzero(np.isfinite(pose).all(axis=1))
     chosen = seen[np.linspace(0, len(seen) - 1, 8).astype(int)] if rows is None else np.asarray(rows, dtype=int)
     pushes = None if log is None else log_of(log)
@@ -81,7 +81,7 @@ def errors(
     axis).
     """
     ax = ax or plt.figure(layout="constrained").add_subplot()
-    time = np.asarray(estimate["time"], dtype=np.float64)
+    time = numbers(estimate["time"], "time")
     at = {name: np.interp(time, truth["time"], truth[name]) for name in ("x", "y")}
     away = 1e3 * np.hypot(estimate["x"] - at["x"], estimate["y"] - at["y"])
     spread = 1e3 * intervals * np.hypot(estimate["std_x"], estimate["std_y"])
@@ -96,9 +96,9 @@ def errors(
 def friction(estimate: Mapping[str, Any], *, names: Sequence[str] = FRICTION, ax: Axes | None = None) -> Axes:
     """Draws friction parameters over time with a band of one standard deviation; d_tri in cm."""
     ax = ax or plt.figure(layout="constrained").add_subplot()
-    time = np.asarray(estimate["time"], dtype=np.float64)
+    time = numbers(estimate["time"], "time")
     for name in names:
-        value, std = (np.asarray(estimate[key], dtype=np.float64) for key in (name, f"std_{name}"))
+        value, std = (numbers(estimate[key], key) for key in (name, f"std_{name}"))
         if np.isnan(value).all():
             continue
         scale, label = (100.0, "d_tri (cm)") if name == "d_tri" else (1.0, name)
@@ -136,6 +136,6 @@ def _draw(ax: Axes, polygons: Polygons, *, color: str, alpha: float = 1.0, fill:
 
 def _shade_dark(ax: Axes, time: NDArray[np.float64], estimate: Mapping[str, Any]) -> None:
     """Shades the times without a camera pose."""
-    dark = np.asarray(estimate["visual"], dtype=np.float64) == 0
+    dark = numbers(estimate["visual"], "visual") == 0
     if dark.any():
         ax.fill_between(time, 0, 1, where=dark, transform=ax.get_xaxis_transform(), color="black", alpha=0.06)

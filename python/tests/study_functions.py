@@ -26,3 +26,13 @@ def die(x):
     if x == 3:
         os.kill(os.getpid(), signal.SIGKILL)
     return {"square": x * x}
+
+
+def writers(x, folder):
+    """The worker's process, and the number of files of the study that it sees."""
+    return {"pid": os.getpid(), "files": len(list(Path(folder).iterdir()))}
+
+
+def no_json(x):
+    """A result that JSON cannot represent."""
+    return {"x": object()}

@@ -1,5 +1,6 @@
 """The command that the package installs is the program: bytes, exit codes, signals."""
 
+import importlib.metadata
 import signal
 import subprocess
 import sys
@@ -66,6 +67,11 @@ def test_a_report_says_what_was_typed(program, installed, demo, tmp_path):
     assert pages[0] == pages[1] and b"stickslip filter /" in pages[1]
     files = [(tmp_path / folder / "out/estimate.csv").read_bytes() for folder in ("theirs", "ours")]
     assert files[0] == files[1]
+
+
+def test_the_package_has_the_licences_of_what_is_compiled_in(installed):
+    names = [Path(file).name for file in importlib.metadata.files("stickslip")]
+    assert {"LICENSE-MIT", "LICENSE-APACHE", "THIRD-PARTY-LICENSES.txt"} <= set(names)
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="no such signals")

@@ -57,7 +57,7 @@ def test_results_are_written_into_the_given_arrays(bench):
     for name, values in expected.items():
         assert again[name] is first[name]
         np.testing.assert_array_equal(again[name], values)
-    with pytest.raises(stickslip.Error, match="out is of another shape"):
+    with pytest.raises(stickslip.Error, match="it must be float64 of this rollout's shape"):
         stickslip.rollout(bench, _starts(4), _push(20), out=first)
 
 

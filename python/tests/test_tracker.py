@@ -46,7 +46,7 @@ def test_a_reading_is_0_or_1_as_a_bool_an_int_or_a_numpy_number(scene):
         tracker.push(0.03 * k, object=(1e-6 * k, 0.0, 0.0), pusher=(-0.1, 0.0, 0.0), tactile=tactile)
     for row, words in [
         ({"tactile": [2, 0, 0]}, r"tactile is \[2, 0, 0\]: a reading is 2; it must be 0 or 1"),
-        ({"object": (0.0, 0.0)}, r"object is \(0.0, 0.0\): "),
+        ({"object": (0.0, 0.0)}, r"object is \[0.0, 0.0\]: "),
     ]:
         with pytest.raises(stickslip.Error, match=words):
             tracker.push(1.0, **row)

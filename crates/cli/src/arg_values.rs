@@ -21,6 +21,14 @@ pub struct ThreadArgs {
     pub threads: Option<u16>,
 }
 
+/// Asks for a run on input that is found to be wrong.
+#[derive(Debug, Args)]
+pub struct ForceArgs {
+    /// Run also if units, frames or columns are found to be wrong
+    #[arg(long)]
+    pub force: bool,
+}
+
 /// A range of log rows, `FROM[:TO]`; `FROM:` also runs to the end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Rows {

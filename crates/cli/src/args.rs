@@ -6,7 +6,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use stickslip::{FilterModel, Method, Occlusion, RunOptions, TactileUse, Tracking};
 use stickslip_evaluation::Variant;
 
-use crate::arg_values::{Rows, ThreadArgs, particles, positive};
+use crate::arg_values::{ForceArgs, Rows, ThreadArgs, particles, positive};
 use crate::camera_args::{CalibrateArgs, RenderArgs, TrackArgs};
 use crate::fit_args::FitArgs;
 use crate::given::GivenArgs;
@@ -202,9 +202,9 @@ pub struct SharedArgs {
     /// Track the pusher without later rows, as live does
     #[arg(long)]
     pub causal: bool,
-    /// Run also if units, frames or columns are found to be wrong
-    #[arg(long)]
-    pub force: bool,
+    /// Choice to run wrong input
+    #[command(flatten)]
+    pub force: ForceArgs,
     /// How many threads
     #[command(flatten)]
     pub threads: ThreadArgs,

@@ -33,7 +33,7 @@ struct Report {
 /// Runs the command.
 pub fn check(args: &CheckArgs) -> Result<Verdict> {
     let given = args.given.resolve("check")?;
-    let topics = args.topics.topics(Program::command())?;
+    let topics = args.topics.options(Program::command())?;
     let log = LogFiles::find(&given.log)?;
     let (setup, log, verdict) = read_scene_and_log(&given.scene, &log, &topics)?;
     let findings = diagnose(&setup, &log);

@@ -17,7 +17,7 @@ use clap::CommandFactory;
 use rayon::prelude::*;
 use stickslip::{Occlusion, Tracking};
 use stickslip_evaluation::{RunConditions, ScoredRun, Variant};
-use stickslip_formats::{Experiment, Topics};
+use stickslip_formats::{BagOptions, Experiment};
 
 use crate::args::{CompareArgs, Program};
 use crate::experiment::{check_occlusion, check_sense, read_folder};
@@ -66,7 +66,7 @@ pub fn compare(args: &CompareArgs) -> Result<Verdict> {
         ready_file(path, &inputs)?;
     }
     let pool = args.shared.threads.pool()?;
-    let topics = args.topics.topics(Program::command())?;
+    let topics = args.topics.options(Program::command())?;
     let (comparison, folders, verdict) =
         pool.install(|| compare_all(args, (scenes, &topics), folders));
     let text = if args.shared.json {
@@ -98,7 +98,7 @@ pub fn compare(args: &CompareArgs) -> Result<Verdict> {
 /// The comparison, the folders that could be read, and whether all of the logs in them could be.
 fn compare_all(
     args: &CompareArgs,
-    given: (Scenes<'_>, &Topics),
+    given: (Scenes<'_>, &BagOptions),
     paths: Vec<PathBuf>,
 ) -> (Comparison, Vec<Folder>, Verdict) {
     // read all folders; those that cannot be read are reported and left out
@@ -148,7 +148,7 @@ fn compare_all(
 /// Reads a folder; the options say which rows are hidden, else truth.json does.
 fn read(
     args: &CompareArgs,
-    (scenes, topics): (Scenes<'_>, &Topics),
+    (scenes, topics): (Scenes<'_>, &BagOptions),
     path: PathBuf,
 ) -> Result<Folder, LostFolder> {
     let (experiment, verdict) = read_folder(&path, &scenes.of(&path), topics)
@@ -157,8 +157,8 @@ fn read(
         Occlusion::None => experiment.facts.occlusion(),
         asked => asked,
     };
-    check_occlusion(occlusion, &experiment)
-        .and_then(|()| check_sense(&args.shared, &experiment))
+    check_occlusion(occlusion, &experiment.log)
+        .and_then(|()| check_sense(&args.shared.force, &experiment))
         .map_err(|error| LostFolder::new(&path, &error))?;
     Ok(Folder {
         path,

@@ -9,11 +9,11 @@ use anyhow::{Context, Result};
 use stickslip::diagnosis::refused;
 use stickslip::{Log, Occlusion, Setup};
 use stickslip_formats::{
-    BagOptions, Experiment, Topics, Truth, TruthFacts, read_log, read_mounts, read_scene,
-    read_truth_csv, read_truth_json, scene_assumptions,
+    BagOptions, Experiment, Truth, TruthFacts, read_log, read_mounts, read_scene, read_truth_csv,
+    read_truth_json, scene_assumptions,
 };
 
-use crate::args::SharedArgs;
+use crate::arg_values::ForceArgs;
 use crate::failure::hinted;
 use crate::log_files::{LogFiles, log_path};
 use crate::output::talk;
@@ -51,7 +51,7 @@ impl Texts<'_> {
 pub fn read_experiment(
     scene: &Path,
     log: &Path,
-    topics: &Topics,
+    topics: &BagOptions,
     truth: Option<&Path>,
 ) -> Result<(Experiment, Verdict)> {
     let (setup, log_data, verdict) = read_scene_and_log(scene, &LogFiles::find(log)?, topics)?;
@@ -79,28 +79,30 @@ pub fn read_experiment(
 }
 
 /// Reads an experiment folder, or a log, with a scene.
-pub fn read_folder(folder: &Path, scene: &Path, topics: &Topics) -> Result<(Experiment, Verdict)> {
+pub fn read_folder(
+    folder: &Path,
+    scene: &Path,
+    topics: &BagOptions,
+) -> Result<(Experiment, Verdict)> {
     read_experiment(scene, &log_path(folder), topics, None)
 }
 
 /// An occlusion that hides no pose is a slip of the pen, and one that hides every pose leaves
 /// nothing to start from.
-pub fn check_occlusion(occlusion: Occlusion, experiment: &Experiment) -> Result<()> {
+pub fn check_occlusion(occlusion: Occlusion, log: &Log) -> Result<()> {
     if occlusion == Occlusion::None {
         return Ok(());
     }
-    let rows = experiment.log.len();
-    let hidden = occlusion.hidden(&experiment.log);
-    let measured: Vec<usize> = (0..rows)
-        .filter(|row| experiment.log.object[*row].is_some())
-        .collect();
+    let rows = log.len();
+    let hidden = occlusion.hidden(log);
+    let measured: Vec<usize> = (0..rows).filter(|row| log.object[*row].is_some()).collect();
     let hides = measured.iter().filter(|row| hidden[**row]).count();
     match measured.as_slice() {
         [first, ..] if hides == measured.len() => Err(hinted(
             format!(
                 "the occlusion hides all {hides} object poses of the log; one is needed to start from"
             ),
-            format!("hide rows from {0} on: `--occlude {0}`", first + 1),
+            format!("hide rows from {} on", first + 1),
         )),
         _ if hides == 0 => Err(hinted(
             format!("the occlusion hides no object pose of the log's {rows} rows"),
@@ -112,12 +114,21 @@ pub fn check_occlusion(occlusion: Occlusion, experiment: &Experiment) -> Result<
 
 /// Refuses an experiment whose units, frames or columns are found to be wrong, unless `--force`
 /// asks for a run.
-pub fn check_sense(shared: &SharedArgs, experiment: &Experiment) -> Result<()> {
-    let found = refused(&experiment.setup, &experiment.log).filter(|_| !shared.force);
+pub fn check_sense(force: &ForceArgs, experiment: &Experiment) -> Result<()> {
+    match force.force {
+        true => Ok(()),
+        false => refuse_nonsense(&experiment.setup, &experiment.log, "--force"),
+    }
+}
+
+/// Refuses a log whose units, frames or columns are found to be wrong. `force` is the option that
+/// runs all the same.
+pub fn refuse_nonsense(setup: &Setup, log: &Log, force: &str) -> Result<()> {
+    let found = refused(setup, log);
     found.map_or(Ok(()), |finding| {
         let advice = finding.advice.unwrap_or_default();
         let help =
-            format!("{advice}. `stickslip check` shows all findings; --force runs all the same");
+            format!("{advice}. `stickslip check` shows all findings; {force} runs all the same");
         Err(hinted(finding.found, help))
     })
 }
@@ -188,15 +199,15 @@ fn parse_scene(text: &str, name: &str) -> Result<Setup> {
 pub fn read_scene_and_log(
     scene: &Path,
     log: &LogFiles,
-    topics: &Topics,
+    topics: &BagOptions,
 ) -> Result<(Setup, Log, Verdict)> {
     // once, since it may be a pipe
     let (text, name) = (text_of(scene, "scene")?, scene.display().to_string());
     let setup = parse_scene(&text, &name)?;
     let options = BagOptions {
-        topics: topics.clone(),
         mounts: read_mounts(&text, &name)?,
         touch_force: setup.tactile.touch_force,
+        ..topics.clone()
     };
     let (log, verdict) = log.read(&options)?;
     Ok((setup, log, verdict))

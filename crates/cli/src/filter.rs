@@ -8,7 +8,7 @@ use std::time::Instant;
 use anyhow::{Context, Result};
 use clap::CommandFactory;
 use serde::Serialize;
-use stickslip::diagnosis::{assumed_stall_force, collapsed, misread};
+use stickslip::diagnosis::{Finding, assumed_stall_force, doubts};
 use stickslip::dynamics::Pose;
 use stickslip::{Estimate, Run, TactileUse, keep_threads_awake, run, run_observed};
 use stickslip_evaluation::{LearnedParameter, ScoredRun, Variant};
@@ -70,11 +70,12 @@ pub fn filter(args: &FilterArgs) -> Result<Verdict> {
     let (experiment, verdict) = read_experiment(
         &given.scene,
         &given.log,
-        &args.topics.topics(Program::command())?,
+        &args.topics.options(Program::command())?,
         args.truth.as_deref(),
     )?;
-    check_occlusion(args.shared.occlusion(), &experiment)?;
-    check_sense(&args.shared, &experiment).with_context(|| given.log.display().to_string())?;
+    check_occlusion(args.shared.occlusion(), &experiment.log)?;
+    check_sense(&args.shared.force, &experiment)
+        .with_context(|| given.log.display().to_string())?;
     check_places(args, &given)?;
     let sample = CloudSample::new(DRAWN);
     let (run, seconds) =
@@ -82,14 +83,13 @@ pub fn filter(args: &FilterArgs) -> Result<Verdict> {
     let radius = args.virtual_radius;
     let radius = radius.unwrap_or(experiment.setup.virtual_radius());
     let hidden = args.shared.occlusion();
+    let warnings: Vec<String> = doubts(&experiment.setup, &experiment.log, &run)
+        .iter()
+        .map(Finding::to_string)
+        .collect();
     let scored = ScoredRun::of(args.variant(), run, &experiment, (hidden, radius));
     let run = sample.into_run(scored);
     let scored = &run.scored;
-    let warnings: Vec<String> = misread(&experiment.setup, &experiment.log)
-        .into_iter()
-        .chain(collapsed(scored.collapses, scored.seen()))
-        .map(|finding| finding.to_string())
-        .collect();
     let summary = Summary::new(&experiment, scored, seconds, &warnings);
     show_result(args.shared.json, &summary, || {
         tables((args, &given.log), &experiment, &scored.estimate, &summary)

@@ -9,14 +9,14 @@ use rayon::prelude::*;
 use serde::Serialize;
 use stickslip_fit::{
     Constant, CrossValidation, Fit, FitOptions, FittedParameter, Parameter, Push, default_folds,
-    predict,
+    doubts, predict,
 };
-use stickslip_formats::Topics;
+use stickslip_formats::BagOptions;
 use stickslip_report::{Block, Report, Section, Table};
 
 use crate::args::Program;
 use crate::compare::expand;
-use crate::experiment::{experiment_name, read_folder, text_of};
+use crate::experiment::{check_sense, experiment_name, read_folder, text_of};
 use crate::files::{Results, ready_file, ready_folder, refuse_inputs, write_report};
 use crate::fit_args::FitArgs;
 use crate::log_files::log_path;
@@ -39,6 +39,8 @@ struct FitResult {
     fit: Fit,
     /// None where there are too few pushes, or none was asked for.
     cross_validation: Option<CrossValidation>,
+    /// Reasons to doubt the fit.
+    warnings: Vec<String>,
     /// The pushes of `--test`, predicted by this fit; none where there are none.
     #[serde(skip_serializing_if = "Option::is_none")]
     test: Option<CrossValidation>,
@@ -53,7 +55,7 @@ pub fn fit(args: &FitArgs) -> Result<Verdict> {
     };
     let folders = expand(&args.folders, args.scenes())?;
     let test_folders = test_folders(args, &folders)?;
-    let topics = args.topics.topics(Program::command())?;
+    let topics = args.topics.options(Program::command())?;
     let pool = args.threads.pool()?;
     let [scene_out, json_out] = ["scene.toml", "fit.json"].map(|name| args.out.join(name));
     let all = folders.iter().chain(&test_folders);
@@ -124,12 +126,12 @@ fn learn(
     options: &FitOptions,
 ) -> Result<FitResult> {
     let progress = stage(format!("fitting {}", counted(pushes.len() as u64, "push")));
-    let fit = stickslip_fit::fit(pushes, options)?;
+    let fit = stickslip_fit::fit(pushes, options, &|_, _| ())?;
     let folds = args.folds.unwrap_or(default_folds(pushes.len()));
     progress.set_message(format!(
         "predicting each of {folds} parts by a fit to the others"
     ));
-    let validate = || stickslip_fit::cross_validate(pushes, folds, options);
+    let validate = || stickslip_fit::cross_validate(pushes, folds, options, &|_, _| ());
     let cross_validation = (folds > 0).then(validate).transpose()?;
     let predict = || predict(test, &fit, cross_validation.as_ref(), options);
     let test = (!test.is_empty()).then(predict).transpose()?;
@@ -140,6 +142,7 @@ fn learn(
             .map(|path| path.display().to_string())
             .collect(),
         seed: args.seed,
+        warnings: doubts(pushes, &fit),
         fit,
         cross_validation,
         test,
@@ -150,12 +153,13 @@ fn learn(
 /// left out, it would change the fit.
 fn read_pushes(
     args: &FitArgs,
-    topics: &Topics,
+    topics: &BagOptions,
     folders: &[PathBuf],
 ) -> Result<(Vec<Push>, Verdict)> {
     let read = |folder: &PathBuf| {
         let (experiment, verdict) = read_folder(folder, &args.scenes().of(folder), topics)
             .with_context(|| folder.display().to_string())?;
+        check_sense(&args.force, &experiment).with_context(|| folder.display().to_string())?;
         let push = Push {
             name: experiment_name(&log_path(folder)),
             setup: experiment.setup,
@@ -282,12 +286,8 @@ fn remarks(result: &FitResult) -> Vec<String> {
         100.0 * fit.noise.drift,
         fit.noise.camera_scale
     ));
-    if !fit.sampling.settled {
-        remarks.push(format!(
-            "warning: the chains have not converged (split R-hat {:.2}); the spreads are rough",
-            fit.sampling.split_rhat
-        ));
-    }
+    let warnings = result.warnings.iter();
+    remarks.extend(warnings.map(|text| format!("warning: {text}")));
     if fit
         .parameters
         .iter()

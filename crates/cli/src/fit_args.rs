@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::arg_values::ThreadArgs;
+use crate::arg_values::{ForceArgs, ThreadArgs};
 use crate::compare::Scenes;
 use crate::topic_args::TopicArgs;
 
@@ -45,6 +45,9 @@ pub struct FitArgs {
     /// Topics of the MCAP logs
     #[command(flatten)]
     pub topics: TopicArgs,
+    /// Choice to fit wrong input
+    #[command(flatten)]
+    pub force: ForceArgs,
     /// How many threads
     #[command(flatten)]
     pub threads: ThreadArgs,

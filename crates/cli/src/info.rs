@@ -15,7 +15,7 @@ use crate::verdict::Verdict;
 
 /// Printed description of a bag.
 #[derive(Serialize)]
-struct Shown {
+pub struct Shown {
     #[serde(flatten)]
     info: BagInfo,
     /// Commands to go on with, in their order.
@@ -26,14 +26,23 @@ struct Shown {
 
 /// Runs the command.
 pub fn info(args: &InfoArgs) -> Result<Verdict> {
-    let (info, verdict) = LogFiles::find(&args.bag)?.info()?;
-    let shown = Shown {
-        commands: commands(&args.bag, &info.suggestion),
-        image_commands: image_commands(&args.bag, &info.image_suggestion),
-        info,
-    };
+    let files = LogFiles::find(&args.bag)?;
+    let (info, warnings) = files.info()?;
+    let verdict = files.told(&warnings);
+    let shown = Shown::new(&args.bag, info);
     show_result(args.json, &shown, || text(&shown))?;
     Ok(verdict)
+}
+
+impl Shown {
+    /// The description of a bag at a path.
+    pub fn new(bag: &Path, info: BagInfo) -> Self {
+        Self {
+            commands: commands(bag, &info.suggestion),
+            image_commands: image_commands(bag, &info.image_suggestion),
+            info,
+        }
+    }
 }
 
 /// Commands that find object and pusher in the bag's images.

@@ -26,6 +26,7 @@ mod fit_args;
 mod frame_names;
 mod frames;
 mod given;
+mod in_process;
 mod info;
 mod live;
 mod live_args;
@@ -52,6 +53,7 @@ use std::io::{self, Write};
 use clap::Parser;
 
 use crate::args::{Command, Program};
+pub use crate::in_process::{bag_info, check_occlusion, check_sense, log_files, read_log_at};
 
 /// Runs the program with the words of a command line, those after its name, and returns its exit
 /// code: 0 done, 1 failed, 2 bad arguments, 3 done with input lost. Results go to the process's

@@ -28,6 +28,8 @@ pub struct LogFiles {
     /// Files that should be there.
     missing: Vec<PathBuf>,
     is_bag: bool,
+    /// True for a bag's folder without a list of its files.
+    unlisted: bool,
 }
 
 /// Kind of a file by its first bytes.
@@ -86,22 +88,19 @@ impl LogFiles {
                 is_bag: [".mcap", ".mcap.zstd"]
                     .iter()
                     .any(|end| name.ends_with(end)),
+                unlisted: false,
             });
         }
         let metadata = path.join(METADATA);
         let listed = if metadata.is_file() {
             let text = text_of(&metadata, "metadata")?;
             let bag = read_bag_metadata(&text, &metadata.display().to_string())?;
-            if bag.storage_identifier != "mcap" {
-                return Err(not_mcap(path, &bag.storage_identifier));
+            if let Some(storage) = bag.other_storage() {
+                return Err(not_mcap(path, storage));
             }
             let files = bag.relative_file_paths.iter();
             files.map(|file| in_folder(path, Path::new(file))).collect()
         } else {
-            talk(format_args!(
-                "warning: {}: no {METADATA}, the recorder was not stopped; its .mcap files are read",
-                path.display()
-            ));
             recordings_in(path)
         };
         let (paths, missing): (Vec<PathBuf>, _) =
@@ -120,15 +119,15 @@ impl LogFiles {
                 paths,
                 missing,
                 is_bag: true,
+                unlisted: !metadata.is_file(),
             }),
         }
     }
 
-    /// Describes a bag; warnings go to standard error.
-    pub fn info(&self) -> Result<(BagInfo, Verdict)> {
+    /// Describes a bag.
+    pub fn info(&self) -> Result<(BagInfo, Vec<LogWarning>)> {
         self.require_bag()?;
-        let (info, warnings) = read_bag_info(self.open_all()?)?;
-        Ok((info, self.told(&warnings)))
+        Ok(read_bag_info(self.open_all()?)?)
     }
 
     /// Refuses a log that is no bag.
@@ -153,17 +152,28 @@ impl LogFiles {
         self.paths.iter().map(open).collect()
     }
 
+    /// Warnings about the files and about their content, in words.
+    pub fn warnings(&self, of_content: &[LogWarning]) -> Vec<String> {
+        let bag = self.shown.display();
+        let unlisted = self.unlisted.then(|| {
+            format!("{bag}: no {METADATA}, the recorder was not stopped; its .mcap files are read")
+        });
+        let missing = (!self.missing.is_empty()).then(|| {
+            let names = names(&self.missing);
+            format!("{bag}: {names} is not there; its messages are lost")
+        });
+        let of_content = of_content.iter().map(LogWarning::to_string);
+        unlisted
+            .into_iter()
+            .chain(of_content)
+            .chain(missing)
+            .collect()
+    }
+
     /// Tells warnings, and whether they are about lost input.
     pub fn told(&self, warnings: &[LogWarning]) -> Verdict {
-        for warning in warnings {
+        for warning in self.warnings(warnings) {
             talk(format_args!("warning: {warning}"));
-        }
-        if !self.missing.is_empty() {
-            talk(format_args!(
-                "warning: {}: {} is not there; its messages are lost",
-                self.shown.display(),
-                names(&self.missing)
-            ));
         }
         let lost = !self.missing.is_empty() || warnings.iter().any(LogWarning::is_loss);
         if lost {
@@ -175,22 +185,29 @@ impl LogFiles {
 
     /// Reads them; warnings go to standard error. The verdict says whether all could be read.
     pub fn read(&self, options: &BagOptions) -> Result<(Log, Verdict)> {
+        let option = |key: &str, topic: &str| format!("--topic {key}={topic}");
+        let read = self.read_quietly(options);
+        let (log, warnings) = read.map_err(|error| topic_hint(error, option))?;
+        Ok((log, self.told(&warnings)))
+    }
+
+    /// Reads them.
+    pub fn read_quietly(&self, options: &BagOptions) -> Result<(Log, Vec<LogWarning>)> {
         let mut files = self.open_all()?;
-        let (log, warnings) = if self.is_bag {
-            read_bag(files, options).map_err(topic_hint)?
-        } else if options.topics.is_default() {
-            let (name, file) = files.remove(0);
-            read_log(file, &name)?
-        } else {
+        if self.is_bag {
+            return Ok(read_bag(files, options)?);
+        }
+        if !(options.topics.is_default() && options.part.is_whole()) {
+            let log = self.shown.display();
             return Err(hinted(
                 format!(
-                    "{}: --topic is for MCAP logs, whose names end in .mcap",
-                    self.shown.display()
+                    "{log}: topics are for MCAP logs, whose names end in .mcap, and so are times of a part"
                 ),
-                "leave --topic out",
+                "leave them out",
             ));
-        };
-        Ok((log, self.told(&warnings)))
+        }
+        let (name, file) = files.remove(0);
+        Ok(read_log(file, &name)?)
     }
 
     /// A file that is of the kind that its name says.
@@ -306,17 +323,23 @@ fn kind_of(file: &mut File) -> io::Result<Kind> {
     })
 }
 
-/// Adds the option by which the command line names the topic that is meant.
-fn topic_hint(error: McapError) -> anyhow::Error {
-    let help = match *error.problem {
-        McapProblem::MissingTopic { topic, .. } => format!("name it with --topic {topic}=TOPIC"),
-        McapProblem::SensorNumber { missing } => {
-            format!("name it with --topic fixel_{missing}=TOPIC")
-        }
+/// Adds how a topic is named. `option` has the words for it, of a key and its topic.
+pub fn topic_hint(error: anyhow::Error, option: impl Fn(&str, &str) -> String) -> anyhow::Error {
+    let Some(read) = error.downcast_ref::<McapError>() else {
+        return error;
+    };
+    let named = |key: &str| format!("name it with {}", option(key, "TOPIC"));
+    let help = match *read.problem {
+        McapProblem::MissingTopic { topic, .. } => named(&topic.to_string()),
+        McapProblem::SensorNumber { missing } => named(&format!("fixel_{missing}")),
+        McapProblem::JumpsBack {
+            log_times: Some([to, from]),
+            ..
+        } => format!("read one run: --to {to}, or --from {from}"),
         McapProblem::Frame { wrench: true, .. } => {
-            "leave forces out with --topic wrench=".to_owned()
+            format!("leave forces out with {}", option("wrench", ""))
         }
-        _ => return error.into(),
+        _ => return error,
     };
     hinted(error.to_string(), help)
 }

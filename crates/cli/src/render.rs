@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use anyhow::Result;
 use rayon::prelude::*;
 use stickslip_evaluation::Reference;
-use stickslip_formats::{Experiment, FrameList, Topics, write_frames};
+use stickslip_formats::{BagOptions, Experiment, FrameList, write_frames};
 use stickslip_rendering::{
     CaptureSettings, FrameGrabber, Optics, RecordedMotion, Video, encode_png,
 };
@@ -30,7 +30,7 @@ pub fn render(args: &RenderArgs) -> Result<Verdict> {
     let (experiment, verdict) = read_folder(
         &args.folder,
         &args.folder.join("scene.toml"),
-        &Topics::default(),
+        &BagOptions::default(),
     )?;
     let recorded = recorded(args, &experiment)?;
     let scene = &experiment.setup.scene;

@@ -48,8 +48,8 @@ pub fn simulate(args: &SimulateArgs) -> Result<Verdict> {
         repeats: REPEATS,
         pusher_memory: PUSHER_MEMORY,
     };
-    let simulation =
-        Simulation::run(&setup, &known, &options).map_err(|error| refused(error, &source.name))?;
+    let simulation = Simulation::run(&setup, &known, &options, &mut |_, _| ())
+        .map_err(|error| refused(error, &source.name))?;
     write(&args.out, &source.scene, &simulation)?;
     show(tables(&source.name, &setup, &simulation))?;
     if simulation.trace.unsolved > 0 {

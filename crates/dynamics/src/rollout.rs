@@ -15,6 +15,9 @@ const LANES: usize = 8;
 /// Chunks of trajectories that make their steps together.
 const CHUNKS: usize = 8;
 
+/// Longest step (s); objects on a table stop sooner.
+const LONGEST_STEP: f64 = 10.0;
+
 /// Trajectories that make their steps together: who shares a rollout among threads gives each
 /// multiples of it.
 pub const ROLLOUT_BLOCK: usize = LANES * CHUNKS;
@@ -85,8 +88,8 @@ pub enum RolloutError {
         /// Number of pusher poses.
         poses: usize,
     },
-    /// The step is not positive.
-    #[error("the step is {h} s; it must be finite and above 0; try 1/30")]
+    /// The step is not positive, or too long.
+    #[error("the step is {h} s; it must be above 0 and at most {LONGEST_STEP} s; try 1/30")]
     Step {
         /// The step found (s).
         h: f64,
@@ -196,7 +199,7 @@ fn check(
     starts: &[RolloutStart],
     arrays: &impl RolloutArrays,
 ) -> Result<(), RolloutError> {
-    if !(h.is_finite() && h > 0.0) {
+    if !(h > 0.0 && h <= LONGEST_STEP) {
         return Err(RolloutError::Step { h });
     }
     let not_finite = |what, index, trajectory| {

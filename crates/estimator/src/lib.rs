@@ -50,7 +50,7 @@ pub use particle::observer::{Observer, SolvedStep};
 pub use particle::view::ParticleView;
 pub use particle_budget::ParticleBudget;
 pub use prior_sample::{PriorSample, SampledState};
-pub use pusher::schedule::Schedule;
+pub use pusher::schedule::{SHORTEST_STEP, Schedule};
 pub use pusher::track::{PusherTrack, Tracking};
 pub use pusher::tracked_pose::TrackedPose;
 pub use quantile::quantile;

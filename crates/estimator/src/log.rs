@@ -4,6 +4,7 @@ use stickslip_dynamics::Pose;
 
 use crate::covariance::PoseCovariance;
 use crate::error::RunError;
+use crate::particle::pose_clock::PoseClock;
 use crate::quantile::quantile;
 use crate::row::{LONGEST_PAUSE, Row, unit_of_times};
 
@@ -47,6 +48,20 @@ impl Log {
             sensor.truncate(rows);
         }
         self.force.truncate(rows);
+    }
+
+    /// For each row, true if the camera does not see the object. A row between its poses that
+    /// another sensor brought does not count.
+    #[must_use]
+    pub fn object_out_of_sight(&self) -> Vec<bool> {
+        out_of_sight(&self.time, &self.object)
+    }
+
+    /// For each row, true if the pusher is not seen. A row between its poses that another sensor
+    /// brought does not count.
+    #[must_use]
+    pub fn pusher_out_of_sight(&self) -> Vec<bool> {
+        out_of_sight(&self.time, &self.pusher)
     }
 
     /// Returns the measurements of row `row`.
@@ -128,4 +143,12 @@ impl Log {
     pub fn is_empty(&self) -> bool {
         self.time.is_empty()
     }
+}
+
+/// For each row, true if a body with these poses is out of sight.
+fn out_of_sight(time: &[f64], poses: &[Option<Pose>]) -> Vec<bool> {
+    let mut clock = PoseClock::new(time.first().copied().unwrap_or(0.0));
+    let rows = time.iter().zip(poses);
+    rows.map(|(time, pose)| clock.is_dark(*time, pose.is_some()))
+        .collect()
 }

@@ -4,6 +4,7 @@ use std::num::NonZero;
 
 use stickslip_dynamics::StepInput;
 
+use crate::diagnosis::{Finding, collapsed, left_out_poses};
 use crate::error::RunError;
 use crate::estimate::EstimateRow;
 use crate::filter_model::FilterModel;
@@ -159,6 +160,8 @@ pub struct Tracker<'o> {
     filter: Option<ContactFilter<'o>>,
     /// Empty row, for rows before the first object pose.
     nothing: EstimateRow,
+    /// Number of rows with a camera pose.
+    seen: usize,
 }
 
 impl Tracker<'static> {
@@ -206,6 +209,7 @@ impl<'o> Tracker<'o> {
             stepped: None,
             filter: None,
             nothing: EstimateRow::default(),
+            seen: 0,
         };
         tracker.filter_options().settings(setup).check()?;
         Ok(tracker)
@@ -266,6 +270,7 @@ impl<'o> Tracker<'o> {
         let clock = self.pusher_clock.get_or_insert(PoseClock::new(row.time));
         let overdue = clock.is_dark(row.time, row.pusher.is_some());
         self.time = Some(row.time);
+        self.seen += usize::from(row.object.is_some());
         self.plan_substeps(row.time, tracked);
 
         // the particles, which begin at the first pose of the object
@@ -378,6 +383,14 @@ impl<'o> Tracker<'o> {
     /// in time (docs/method.md, "The pusher's track").
     pub fn pusher_poses_left_out(&self) -> u32 {
         self.pusher.left_out()
+    }
+
+    /// Finds reasons to doubt the estimates so far: collapses, and pusher poses that counted as
+    /// missing.
+    pub fn doubts(&self) -> Vec<Finding> {
+        let left_out = left_out_poses(self.pusher_poses_left_out() as usize, "");
+        let collapsed = collapsed(self.collapses(), self.seen);
+        left_out.into_iter().chain(collapsed).collect()
     }
 
     /// Number of re-simulations of the steps since an occlusion began, see

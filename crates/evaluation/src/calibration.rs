@@ -170,7 +170,7 @@ fn simulated(setup: &Setup, seed: u64, physics: Physics) -> Option<KnownExperime
         repeats: REPEATS,
         pusher_memory: PUSHER_MEMORY,
     };
-    let simulation = Simulation::run(setup, &known, &options).ok()?;
+    let simulation = Simulation::run(setup, &known, &options, &mut |_, _| ()).ok()?;
     let poses = simulation.truth.pose.iter();
     let truth = poses.map(|pose| SampledState {
         pose: *pose,
@@ -225,6 +225,10 @@ impl<'a> Ranks<'a> {
 
 impl Observer for Ranks<'_> {
     fn on_step(&self, _: &SolvedStep<'_>) {}
+
+    fn wants_steps(&self) -> bool {
+        false
+    }
 
     fn on_row(&self, row: usize, particles: &ParticleView<'_>) {
         let ranks = self.among(row, particles);

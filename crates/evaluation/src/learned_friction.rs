@@ -11,7 +11,7 @@
 
 use serde::Serialize;
 use stickslip::dynamics::Friction;
-use stickslip::{Estimate, EstimateRow};
+use stickslip::{Estimate, EstimateRow, Setup};
 
 /// Probability from which a contact counts as there.
 const TOUCHING: f64 = 0.5;
@@ -45,6 +45,14 @@ struct Source {
     name: &'static str,
     value: fn(&Friction) -> f64,
     informs: fn(&EstimateRow) -> bool,
+}
+
+/// Friction learnt from rows that come one by one. It keeps only the rows that decide, so that it
+/// does not grow.
+#[derive(Clone, Debug, Default)]
+pub struct LearningFriction {
+    /// The first row with a prior, then those that were the last to inform about a parameter.
+    rows: Estimate,
 }
 
 /// μ_s, μ_p, μ_f and d_tri.
@@ -85,18 +93,14 @@ impl LearnedParameter {
 
     fn of(source: &Source, estimate: &Estimate) -> Option<Self> {
         let value = |row: &EstimateRow| row.friction.map(|mean| (source.value)(&mean));
-        let spread = |row: &EstimateRow| row.spread?.friction.map(|std| (source.value)(&std));
+        let spread = |row: &EstimateRow| source.spread(row);
         let mut rows = estimate.rows.iter();
         let prior_mean = rows.find_map(value)?;
 
         let prior = estimate.rows.iter().find_map(spread).unwrap_or(0.0);
         let narrower = |std: f64| prior == 0.0 || std < NARROWER * prior;
 
-        // a row informs that the camera saw, and that follows a step in which the parameter acted
-        let informing = |row: &EstimateRow| {
-            row.visual && (source.informs)(row) && spread(row).is_some_and(|std| std > 0.0)
-        };
-        let informed = estimate.rows.iter().rposition(informing);
+        let informed = estimate.rows.iter().rposition(|row| source.informed(row));
         let row = informed.filter(|row| spread(&estimate.rows[*row]).is_some_and(narrower));
         let at_row = informed.map(|row| &estimate.rows[row]);
         Some(Self {
@@ -135,6 +139,54 @@ impl LearnedParameter {
         let mut sources = SOURCES.iter();
         let source = sources.find(|source| source.name == self.name)?;
         Some((source.value)(friction))
+    }
+}
+
+impl Source {
+    fn spread(&self, row: &EstimateRow) -> Option<f64> {
+        row.spread?.friction.map(|std| (self.value)(&std))
+    }
+
+    /// Returns true if the camera saw the row and the parameter acted in the step to it.
+    fn informed(&self, row: &EstimateRow) -> bool {
+        row.visual && (self.informs)(row) && self.spread(row).is_some_and(|std| std > 0.0)
+    }
+}
+
+impl LearningFriction {
+    /// A run in this scene, before its first row.
+    #[must_use]
+    pub fn new(setup: &Setup) -> Self {
+        Self {
+            rows: Estimate {
+                has_tripod: setup.has_tripod(),
+                ..Estimate::default()
+            },
+        }
+    }
+
+    /// Takes the estimate at the next row.
+    pub fn add(&mut self, row: &EstimateRow) {
+        let rows = &mut self.rows.rows;
+        let informs = || SOURCES.iter().any(|source| source.informed(row));
+        if row.friction.is_none() || !(rows.is_empty() || informs()) {
+            return;
+        }
+        rows.push(row.clone());
+        let last = SOURCES.map(|source| rows.iter().rposition(|row| source.informed(row)));
+        let mut place = 0;
+        rows.retain(|_| {
+            let decides = place == 0 || last.contains(&Some(place));
+            place += 1;
+            decides
+        });
+    }
+
+    /// All parameters so far, like [`LearnedParameter::all`]; `row` and `informed` do not count
+    /// rows of the run.
+    #[must_use]
+    pub fn parameters(&self) -> Vec<LearnedParameter> {
+        LearnedParameter::all(&self.rows)
     }
 }
 
@@ -238,6 +290,43 @@ mod tests {
             );
             assert_eq!(mu_p.informed, Some(1));
         }
+    }
+
+    #[test]
+    fn rows_one_by_one_teach_what_all_teach_and_few_are_kept() {
+        let rows: Vec<EstimateRow> = (0..200)
+            .map(|k| {
+                let touch = f64::from(u8::from(k % 7 == 0));
+                let speed = if k % 3 == 0 { 0.0 } else { 0.02 };
+                let std = 0.1 / (1.0 + f64::from(k));
+                row(
+                    0.3 + 1e-3 * f64::from(k),
+                    std,
+                    speed,
+                    [touch, 1.0 - touch],
+                    k % 5 > 0,
+                )
+            })
+            .collect();
+        let mut one_by_one = LearningFriction::default();
+        for count in 0..rows.len() {
+            let whole = Estimate {
+                rows: rows[..count].to_vec(),
+                ..Estimate::default()
+            };
+            let numbers = |all: Vec<LearnedParameter>| -> Vec<_> {
+                all.iter()
+                    .map(|p| (p.name, p.mean, p.std, p.observed))
+                    .collect()
+            };
+            assert_eq!(
+                numbers(one_by_one.parameters()),
+                numbers(LearnedParameter::all(&whole)),
+                "{count} rows"
+            );
+            one_by_one.add(&rows[count]);
+        }
+        assert!(one_by_one.rows.rows.len() <= 1 + SOURCES.len());
     }
 
     #[test]

@@ -20,7 +20,7 @@ pub use calibration::{
     CalibrationOptions, CalibrationRun, Observed, Placed, QUANTITIES, RankTally, Tally, TruthSource,
 };
 pub use ingredient::Ingredient;
-pub use learned_friction::LearnedParameter;
+pub use learned_friction::{LearnedParameter, LearningFriction};
 pub use reference::Agreement;
 pub use run::{RunConditions, ScoredRun};
 pub use score::{Reference, Scores, score};

@@ -82,9 +82,9 @@ impl Physics {
 }
 
 impl Simulation {
-    /// Simulates the experiment of `setup`. `known` has the true friction and the first hidden row;
-    /// where it has none, they are the scene's friction and five frames at 30 Hz before the first
-    /// contact with a fixel.
+    /// Simulates the experiment of `setup`. `known` has the true friction and the first hidden
+    /// row. The defaults are the scene's friction, and five frames at 30 Hz before the first
+    /// contact with a fixel. `progress` gets the number of finished frames, and of all.
     ///
     /// # Errors
     /// The setup has no start, bodies overlap there, the testbed is to have a rigid drive, or a
@@ -93,6 +93,7 @@ impl Simulation {
         setup: &Setup,
         known: &TruthFacts,
         options: &SimulationOptions,
+        progress: &mut dyn FnMut(usize, usize),
     ) -> Result<Self, SimulationError> {
         let trial = Trial {
             scene: &setup.scene,
@@ -110,6 +111,8 @@ impl Simulation {
         };
 
         // what happens
+        let frames = trial.frames();
+        let progress = &mut |done| progress(done, frames);
         let trace = match options.physics {
             Physics::Testbed => Rig {
                 mu_s: friction.mu_s,
@@ -118,8 +121,8 @@ impl Simulation {
                 touch,
                 ..Rig::of(&setup.scene)
             }
-            .run(&trial),
-            Physics::Model => Model { friction, touch }.run(&trial),
+            .run_observed(&trial, progress),
+            Physics::Model => Model { friction, touch }.run_observed(&trial, progress),
         }?;
 
         // what is measured of it, and what is true

@@ -27,7 +27,7 @@ fn a_jam_holds_in_the_belief_while_the_pusher_stands() {
             repeats: REPEATS,
             pusher_memory: PUSHER_MEMORY,
         };
-        let simulation = Simulation::run(&setup, &TruthFacts::default(), &options);
+        let simulation = Simulation::run(&setup, &TruthFacts::default(), &options, &mut |_, _| ());
         let experiment = simulation.expect("it runs").into_experiment(setup.clone());
         let dark = experiment.facts.occlude_from.expect("a fixel is met");
         let options = RunOptions {

@@ -34,7 +34,7 @@ fn logged(seed: u64) -> Experiment {
         repeats: REPEATS,
         pusher_memory: PUSHER_MEMORY,
     };
-    let simulation = Simulation::run(&setup, &TruthFacts::default(), &options);
+    let simulation = Simulation::run(&setup, &TruthFacts::default(), &options, &mut |_, _| ());
     simulation.expect("it runs").into_experiment(setup)
 }
 

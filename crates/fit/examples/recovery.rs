@@ -41,7 +41,7 @@ fn main() {
         let truth = setup().drawn_friction(Streams::new(1000 + set).normals(0, 0, 0));
         let seed = 100 * set;
         let pushes = pushes(truth, physics, pushes_of_a_set.unwrap_or(PUSHES), seed);
-        let fit = fit(&pushes, &options).expect("a fit");
+        let fit = fit(&pushes, &options, &|_, _| ()).expect("a fit");
         let d_tri = match physics {
             Physics::Model => truth.d_tri,
             Physics::Testbed => rig_tripod_radius(truth, seed),

@@ -28,6 +28,14 @@ pub enum FitError {
         /// All that are.
         known: String,
     },
+    /// A push in which nothing touches the object.
+    #[error("{push}: {found}. It is no push: leave it out of the fit")]
+    Untouched {
+        /// Its name.
+        push: String,
+        /// The finding.
+        found: String,
+    },
     /// Nothing is to be learnt.
     #[error("no parameter is free; name some of {known}")]
     NothingFree {

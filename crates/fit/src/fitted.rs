@@ -9,12 +9,13 @@ use crate::chain::Chain;
 use crate::discrepancy::{Constant, is_known};
 use crate::error::FitError;
 use crate::likelihood::Noise;
-use crate::optimum::optima;
+use crate::optimum::{most_tried, optima};
 use crate::parameter::Parameter;
-use crate::posterior::{Posterior, noise_of};
+use crate::posterior::{NUISANCES, Posterior, noise_of};
 use crate::prior::Prior;
+use crate::progress::{Listener, Progress};
 use crate::push::{PreparedPush, Push};
-use crate::sampler::sample;
+use crate::sampler::{most_sampled, rounds, sample};
 
 /// Posterior over prior standard deviation below which a parameter counts as determined.
 const DETERMINED: f64 = 0.5;
@@ -110,31 +111,55 @@ pub struct Sampling {
     pub unsolved: u32,
 }
 
-/// Learns the free parameters of `options` from `pushes`.
+/// Learns the free parameters of `options` from `pushes`; `progress` gets what was done of how
+/// much.
 ///
 /// # Errors
 /// Fewer than two pushes, scenes that do not go together, or a push that cannot be simulated.
-pub fn fit(pushes: &[Push], options: &FitOptions) -> Result<Fit, FitError> {
-    let prepared = prepare(pushes)?;
-    fit_prepared(&prepared.iter().collect::<Vec<_>>(), options)
+pub fn fit(
+    pushes: &[Push],
+    options: &FitOptions,
+    progress: &Listener<'_>,
+) -> Result<Fit, FitError> {
+    let progress = Progress::new(progress, options.most_vectors());
+    let prepared = prepare(pushes, &progress)?;
+    fit_prepared(&prepared.iter().collect::<Vec<_>>(), options, &progress)
 }
 
 /// Pushes made ready; at least two.
-pub(crate) fn prepare(pushes: &[Push]) -> Result<Vec<PreparedPush>, FitError> {
+pub(crate) fn prepare(
+    pushes: &[Push],
+    progress: &Progress<'_>,
+) -> Result<Vec<PreparedPush>, FitError> {
     if pushes.len() < 2 {
         return Err(FitError::TooFewPushes {
             pushes: pushes.len(),
             least: 2,
         });
     }
-    pushes.iter().cloned().map(PreparedPush::new).collect()
+    let prepared = pushes.iter().cloned().map(|push| {
+        progress.show();
+        PreparedPush::new(push)
+    });
+    prepared.collect()
 }
 
-pub(crate) fn fit_prepared(
-    pushes: &[&PreparedPush],
+impl FitOptions {
+    /// Upper limit of the number of vectors that a fit tries; a search rarely exceeds its share.
+    pub(crate) fn most_vectors(&self) -> u64 {
+        let dimension = self.parameters.len() + NUISANCES;
+        let costly = !self.parameters.iter().all(|free| free.keeps_scene());
+        let searches = (SEARCHES + 1) as u64 * most_tried(dimension);
+        SCREENED as u64 + searches + most_sampled(dimension, rounds(costly))
+    }
+}
+
+pub(crate) fn fit_prepared<'a>(
+    pushes: &[&'a PreparedPush],
     options: &FitOptions,
+    progress: &'a Progress<'a>,
 ) -> Result<Fit, FitError> {
-    let posterior = Posterior::new(pushes.to_vec(), &options.parameters)?;
+    let posterior = Posterior::new(pushes.to_vec(), &options.parameters, progress)?;
     let streams = Streams::new(options.seed);
 
     // the optimum, from the best of many draws from the prior
@@ -149,7 +174,7 @@ pub(crate) fn fit_prepared(
     let stds: Vec<f64> = (0..free).map(|k| covariance[k][k].sqrt()).collect();
 
     // what nothing was learnt of keeps its prior, and the others go with that
-    let (values, noise, refined) = settle(pushes, options, &posterior, optimum, &stds)?;
+    let (values, noise, refined) = settle(options, &posterior, optimum, &stds)?;
 
     let parameters = posterior.parameters.iter().zip(&values).zip(&stds);
     let fit = Fit {
@@ -194,7 +219,6 @@ fn screen(posterior: &Posterior<'_>, streams: Streams) -> (Vec<Vec<f64>>, u64) {
 /// Whitened values of all parameters, the noise that goes with them, and the number of vectors
 /// tried.
 fn settle(
-    pushes: &[&PreparedPush],
     options: &FitOptions,
     posterior: &Posterior<'_>,
     optimum: &[f64],
@@ -206,7 +230,7 @@ fn settle(
         return Ok((optimum[..free].to_vec(), posterior.noise(optimum), 0));
     }
     let parameters: Vec<Parameter> = kept.iter().map(|k| options.parameters[*k]).collect();
-    let smaller = Posterior::new(pushes.to_vec(), &parameters)?;
+    let smaller = posterior.with_parameters(&parameters)?;
     let start = kept.iter().map(|k| optimum[*k]);
     let start: Vec<f64> = start.chain(optimum[free..].iter().copied()).collect();
     let (best, tried) = optima(&smaller, &[start]);

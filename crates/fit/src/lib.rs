@@ -7,6 +7,7 @@
 
 mod chain;
 mod discrepancy;
+mod doubts;
 mod error;
 mod fitted;
 mod likelihood;
@@ -14,16 +15,19 @@ mod optimum;
 mod parameter;
 mod posterior;
 mod prior;
+mod progress;
 mod push;
 mod sampler;
 mod scene_text;
 mod validation;
 
 pub use discrepancy::Constant;
+pub use doubts::doubts;
 pub use error::FitError;
 pub use fitted::{Fit, FitOptions, FittedParameter, Sampling, fit};
 pub use likelihood::Noise;
 pub use parameter::Parameter;
 pub use prior::Prior;
+pub use progress::Listener;
 pub use push::Push;
 pub use validation::{CrossValidation, HeldOut, cross_validate, default_folds, predict};

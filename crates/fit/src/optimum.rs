@@ -30,6 +30,12 @@ impl CostFunction for Cost<'_> {
     }
 }
 
+/// Vectors that a search tries at most, unless it shrinks its simplex: the first simplex, then two
+/// in each iteration.
+pub(crate) fn most_tried(dimension: usize) -> u64 {
+    (2 * ITERATIONS_PER_NUMBER + 1) * dimension as u64 + 1
+}
+
 /// The best vectors that searches from `starts` find, the best one first; the number of vectors
 /// that they tried.
 pub(crate) fn optima(posterior: &Posterior<'_>, starts: &[Vec<f64>]) -> (Vec<Vec<f64>>, u64) {

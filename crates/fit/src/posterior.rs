@@ -13,6 +13,7 @@ use crate::error::FitError;
 use crate::likelihood::{Noise, log_likelihood};
 use crate::parameter::Parameter;
 use crate::prior::Prior;
+use crate::progress::Progress;
 use crate::push::{Instant, PreparedPush};
 
 /// Vectors whose pushes are predicted side by side.
@@ -34,8 +35,8 @@ const DRIFT: Prior = Prior::LogNormal {
 };
 
 /// The pushes and the free parameters.
-#[derive(Debug)]
 pub(crate) struct Posterior<'a> {
+    progress: &'a Progress<'a>,
     pub pushes: Vec<&'a PreparedPush>,
     /// Times at which the poses of each push were taken.
     instants: Vec<Vec<Instant>>,
@@ -47,7 +48,11 @@ pub(crate) struct Posterior<'a> {
 impl<'a> Posterior<'a> {
     /// # Errors
     /// The scenes do not go together, or leave nothing open.
-    pub fn new(pushes: Vec<&'a PreparedPush>, parameters: &[Parameter]) -> Result<Self, FitError> {
+    pub fn new(
+        pushes: Vec<&'a PreparedPush>,
+        parameters: &[Parameter],
+        progress: &'a Progress<'a>,
+    ) -> Result<Self, FitError> {
         let first = *pushes.first().ok_or(FitError::TooFewPushes {
             pushes: 0,
             least: 1,
@@ -59,6 +64,7 @@ impl<'a> Posterior<'a> {
         }
         let prior = |parameter: &Parameter| (*parameter, parameter.prior(&first.push.setup));
         Ok(Self {
+            progress,
             parameters: parameters.iter().map(prior).collect(),
             side_by_side: parameters.iter().all(|parameter| parameter.keeps_scene()),
             instants: pushes
@@ -67,6 +73,14 @@ impl<'a> Posterior<'a> {
                 .collect(),
             pushes,
         })
+    }
+
+    /// Posterior of other free parameters by these pushes.
+    ///
+    /// # Errors
+    /// Those of [`Posterior::new`].
+    pub fn with_parameters(&self, parameters: &[Parameter]) -> Result<Self, FitError> {
+        Self::new(self.pushes.clone(), parameters, self.progress)
     }
 
     /// Numbers of a vector.
@@ -89,6 +103,7 @@ impl<'a> Posterior<'a> {
     pub fn log_densities(&self, vectors: &[Vec<f64>]) -> Vec<f64> {
         let chunks: Vec<&[Vec<f64>]> = vectors.chunks(LANES).collect();
         let pushes = self.pushes.len();
+        self.progress.add(vectors.len());
         let jobs = (0..chunks.len() * pushes).into_par_iter();
         let likelihoods: Vec<[f64; LANES]> = jobs
             .map(|job| self.log_likelihoods(job % pushes, chunks[job / pushes]))
@@ -114,6 +129,7 @@ impl<'a> Posterior<'a> {
         push: usize,
         vectors: &[Vec<f64>],
     ) -> Vec<Result<NominalPrediction, ShapeError>> {
+        self.progress.show();
         let prepared = self.pushes[push];
         let setup = |vector: &Vec<f64>| {
             let mut setup = prepared.push.setup.clone();

@@ -1,5 +1,6 @@
 //! One push to learn from: [`Push`], and made ready for predictions, [`PreparedPush`].
 
+use stickslip::diagnosis::untouched;
 use stickslip::{Log, NominalPrediction, NominalPredictor, Schedule, Setup, wrapped};
 use stickslip_dynamics::Pose;
 
@@ -55,6 +56,10 @@ pub(crate) struct Instant {
 impl PreparedPush {
     pub fn new(push: Push) -> Result<Self, FitError> {
         let Push { name, setup, log } = &push;
+        if let Some(finding) = untouched(setup, log) {
+            let (push, found) = (name.clone(), finding.found);
+            return Err(FitError::Untouched { push, found });
+        }
         let predictor = NominalPredictor::new(setup, log);
         let predictor = predictor.map_err(|source| FitError::Run {
             push: name.clone(),

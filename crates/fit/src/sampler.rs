@@ -34,6 +34,16 @@ fn walkers(dimension: usize) -> usize {
     (4 * dimension).div_ceil(2 * LANES).max(2) * 2 * LANES
 }
 
+/// Moves of a round, and most rounds.
+pub(crate) fn rounds(costly: bool) -> [usize; 2] {
+    if costly { COSTLY_ROUNDS } else { ROUNDS }
+}
+
+/// Most vectors that are tried in so many rounds of so many moves.
+pub(crate) fn most_sampled(dimension: usize, [round, most_rounds]: [usize; 2]) -> u64 {
+    (walkers(dimension) * (round * most_rounds + 1)) as u64
+}
+
 /// Samples `posterior` from around `start` until the second half of the chains has settled, by
 /// `settled` as split R̂, or for the most rounds; also the number of vectors tried.
 pub(crate) fn sample(
@@ -54,10 +64,7 @@ pub(crate) fn sample(
     let mut densities = posterior.log_densities(&vectors);
     let mut chain = Chain::new(count, dimension);
     let mut moves = 0;
-    let [round, most_rounds] = match posterior.is_costly() {
-        true => COSTLY_ROUNDS,
-        false => ROUNDS,
-    };
+    let [round, most_rounds] = rounds(posterior.is_costly());
     for _ in 0..most_rounds {
         for _ in 0..round {
             let mut accepted = 0;

@@ -10,6 +10,7 @@ use crate::error::FitError;
 use crate::fitted::{Fit, FitOptions, fit_prepared, prepare};
 use crate::likelihood::{FREEDOM, Noise, STRAY_FACTOR, STRAY_SHARE, drift_std};
 use crate::posterior::Posterior;
+use crate::progress::{Listener, Progress};
 use crate::push::{PreparedPush, Push};
 
 /// Draws of the noise for each sample of the posterior.
@@ -68,7 +69,7 @@ pub fn default_folds(pushes: usize) -> usize {
 }
 
 /// Deals the pushes into `folds` parts, one after the other, and predicts each part by a fit to the
-/// others. Errors are against the measured poses.
+/// others. Errors are against the measured poses. `progress` gets what was done of how much.
 ///
 /// # Errors
 /// Those of [`fit`](crate::fit); a fold that leaves fewer than two pushes to fit.
@@ -76,8 +77,12 @@ pub fn cross_validate(
     pushes: &[Push],
     folds: usize,
     options: &FitOptions,
+    progress: &Listener<'_>,
 ) -> Result<CrossValidation, FitError> {
-    let prepared = prepare(pushes)?;
+    let most = options.most_vectors();
+    let before = |fold: usize| fold as u64 * most;
+    let all = before(folds);
+    let prepared = prepare(pushes, &Progress::new(&|_, _| progress(0, all), most))?;
     let least = if folds < 3 { 4 } else { 3.max(folds) };
     if folds < 2 || prepared.len() < least {
         return Err(FitError::TooFewPushes {
@@ -90,9 +95,12 @@ pub fn cross_validate(
         let of_fold = |(k, _): &(usize, &PreparedPush)| k % folds == fold;
         let (test, train): (Vec<_>, Vec<_>) = prepared.iter().enumerate().partition(of_fold);
         let train: Vec<&PreparedPush> = train.into_iter().map(|(_, push)| push).collect();
-        let fit = fit_prepared(&train, options)?;
+        let of_fold = |done: u64, _: u64| progress(before(fold) + done, all);
+        let of_fold = Progress::new(&of_fold, most);
+        let fit = fit_prepared(&train, options, &of_fold)?;
         for (k, push) in test {
-            held_out.push((k, predict_held_out(push, k, fold, &fit, options)?));
+            let held = predict_held_out(push, k, fold, &fit, options, &of_fold)?;
+            held_out.push((k, held));
         }
     }
     held_out.sort_by_key(|(k, _)| *k);
@@ -113,9 +121,10 @@ pub fn predict(
     options: &FitOptions,
 ) -> Result<CrossValidation, FitError> {
     let refused = validation.is_some_and(|validation| !validation.pays);
+    let unseen = Progress::new(&|_, _| (), 0);
     let predicted = pushes.iter().enumerate().map(|(k, push)| {
         let prepared = PreparedPush::new(push.clone())?;
-        let mut predicted = predict_held_out(&prepared, k, 0, fit, options)?;
+        let mut predicted = predict_held_out(&prepared, k, 0, fit, options, &unseen)?;
         if refused {
             predicted.final_mm[1] = predicted.final_mm[0];
             predicted.wmse_mm[1] = predicted.wmse_mm[0];
@@ -167,6 +176,7 @@ fn predict_held_out(
     fold: usize,
     fit: &Fit,
     options: &FitOptions,
+    progress: &Progress<'_>,
 ) -> Result<HeldOut, FitError> {
     let mut fitted = push.push.setup.clone();
     fit.apply(&mut fitted)?;
@@ -181,7 +191,7 @@ fn predict_held_out(
         fold,
         final_mm: of(|scores| scores.final_error_mm),
         wmse_mm: of(|scores| scores.wmse_mm),
-        covered: covered(push, fit, options, draw)?,
+        covered: covered(push, fit, options, draw, progress)?,
     })
 }
 
@@ -217,8 +227,9 @@ fn covered(
     fit: &Fit,
     options: &FitOptions,
     draw: Draw,
+    progress: &Progress<'_>,
 ) -> Result<[bool; 3], FitError> {
-    let posterior = Posterior::new(vec![push], &options.parameters)?;
+    let posterior = Posterior::new(vec![push], &options.parameters, progress)?;
     let radius = push.push.setup.virtual_radius();
     let mut errors: [Vec<f64>; 3] = Default::default();
     let predictions = posterior.predictions(0, &fit.samples);

@@ -2,7 +2,7 @@
 
 use std::path::{Component, Path};
 
-use serde::Deserialize;
+use serde::{Deserialize, Deserializer};
 
 /// Most bytes of the file; one with hundreds of topics and splits has 100 kB.
 const LIMIT: usize = 1 << 24;
@@ -10,10 +10,32 @@ const LIMIT: usize = 1 << 24;
 /// Content of a bag's `metadata.yaml`.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
 pub struct BagMetadata {
-    /// Storage of its files: `mcap` or `sqlite3`.
+    /// Storage of its files, `mcap` or `sqlite3`; empty after `ros2 bag reindex`.
+    #[serde(default, deserialize_with = "text_or_nothing")]
     pub storage_identifier: String,
     /// Its files in the order of recording, from the bag's folder.
     pub relative_file_paths: Vec<String>,
+}
+
+/// A text; empty where the key has no value.
+fn text_or_nothing<'de, D: Deserializer<'de>>(from: D) -> Result<String, D::Error> {
+    Ok(Option::deserialize(from)?.unwrap_or_default())
+}
+
+impl BagMetadata {
+    /// Storage of the files if it is not MCAP; the ending of a file decides where none is named.
+    #[must_use]
+    pub fn other_storage(&self) -> Option<&str> {
+        match self.storage_identifier.trim() {
+            "mcap" => None,
+            "" => {
+                let is_sqlite = |path: &String| path.to_lowercase().ends_with(".db3");
+                let any = self.relative_file_paths.iter().any(is_sqlite);
+                any.then_some("sqlite3")
+            }
+            other => Some(other),
+        }
+    }
 }
 
 /// Reason why `metadata.yaml` was refused.

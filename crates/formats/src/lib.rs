@@ -16,6 +16,7 @@ mod estimate_csv;
 mod estimate_json;
 mod experiment;
 mod frames_csv;
+mod left_out;
 mod log_columns;
 mod log_csv;
 mod log_mcap;
@@ -39,14 +40,15 @@ pub use estimate_csv::{read_estimate, write_estimate};
 pub use estimate_json::{Pace, estimate_json};
 pub use experiment::Experiment;
 pub use frames_csv::{FrameList, read_frames, write_frames};
+pub use left_out::{LeftOut, Reason};
 pub use log_columns::{log_columns, log_of_columns};
 pub use log_csv::{SensorError, check_sensors, read_log, write_log};
 pub use log_mcap::{
-    BagCameraInfo, BagImage, BagInfo, BagOptions, BagPicture, CameraMapping, CameraRecording,
-    CameraTopics, Frames, McapError, McapPlace, McapProblem, McapWriteError, Place, PosesInfo,
-    Readings, Topic, TopicError, TopicInfo, TopicMapping, Topics, read_bag, read_bag_camera_info,
-    read_bag_images, read_bag_info, read_log_mcap, write_estimate_mcap, write_estimate_tum,
-    write_log_mcap,
+    BagCameraInfo, BagImage, BagInfo, BagOptions, BagPart, BagPicture, CameraMapping,
+    CameraRecording, CameraTopics, Frames, LogTime, LogTimeError, McapError, McapPlace,
+    McapProblem, McapWriteError, Place, PosesInfo, Readings, Topic, TopicError, TopicInfo,
+    TopicMapping, Topics, read_bag, read_bag_camera_info, read_bag_images, read_bag_info,
+    read_log_mcap, write_estimate_mcap, write_estimate_tum, write_log_mcap,
 };
 pub use log_warning::LogWarning;
 pub use modes_csv::write_modes;
@@ -60,8 +62,8 @@ pub use outline::{
 pub use recorder::{CsvRecorder, McapRecorder};
 pub use row_json::{RowJsonError, read_row_json};
 pub use scene::{
-    NEW_SCENE, SceneEdit, SceneError, SceneProblem, read_mounts, read_scene, scene_assumptions,
-    scene_schema,
+    NEW_SCENE, SceneEdit, SceneError, SceneProblem, SceneWayError, read_mounts, read_scene,
+    scene_assumptions, scene_schema,
 };
 pub use truth_csv::{Truth, read_truth_csv, truth_columns, truth_of_columns, write_truth_csv};
 pub use truth_json::{TruthFacts, TruthFactsError, read_truth_json, write_truth_json};

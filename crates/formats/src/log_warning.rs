@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use crate::left_out::LeftOut;
+
 /// Something in a log that was read over.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
@@ -37,16 +39,32 @@ pub enum LogWarning {
         /// Largest tilt (rad).
         largest: f64,
     },
-    /// Frames whose pose is not known at some stamps, since other transforms between them are not.
-    Unlinked {
+    /// Measurements of a recording that are in no row.
+    LeftOut {
         /// Display name of the bag.
         file: String,
-        /// Topic and frames.
+        /// Their place, number and reason.
+        left_out: LeftOut,
+    },
+    /// Topics of poses, forces and touches that no key is mapped to.
+    Unread {
+        /// Display name of the bag.
+        file: String,
+        /// Their names.
+        topics: Vec<String>,
+        /// Number of their messages.
+        messages: usize,
+    },
+    /// Messages that were recorded after later ones; they are sorted by stamp.
+    Late {
+        /// Display name of the bag.
+        file: String,
+        /// Topic, and frames where it carries transforms.
         place: String,
-        /// Number of stamps.
+        /// Number of messages.
         count: usize,
-        /// Of how many.
-        of: usize,
+        /// Longest delay (s).
+        longest: f64,
     },
     /// Covariances that are none; their poses count as if nothing were said of their noise.
     NoCovariance {
@@ -59,17 +77,6 @@ pub enum LogWarning {
         /// Of how many poses.
         of: usize,
     },
-    /// A topic whose messages are all at other times than the poses; its cells are empty.
-    Elsewhere {
-        /// Display name of the file.
-        file: String,
-        /// Name of the topic.
-        topic: String,
-        /// Its times.
-        at: String,
-        /// Those of the poses.
-        rows: String,
-    },
 }
 
 impl LogWarning {
@@ -77,6 +84,31 @@ impl LogWarning {
     #[must_use]
     pub fn is_loss(&self) -> bool {
         matches!(self, Self::CutOff { .. })
+    }
+
+    /// Returns the measurements that were left out, if it is about some.
+    #[must_use]
+    pub fn left_out(&self) -> Option<&LeftOut> {
+        if let Self::LeftOut { left_out, .. } = self {
+            Some(left_out)
+        } else {
+            None
+        }
+    }
+}
+
+/// Names in a row; the first ones of many, each cut off where it is very long.
+pub(crate) fn listed(names: &[String]) -> String {
+    const MOST: usize = 20;
+    const LONGEST: usize = 100;
+    let short = |name: &String| match name.char_indices().nth(LONGEST) {
+        Some((end, _)) => format!("{}…", &name[..end]),
+        None => name.clone(),
+    };
+    let shown: Vec<String> = names.iter().take(MOST).map(short).collect();
+    match names.len().checked_sub(MOST) {
+        None | Some(0) => shown.join(", "),
+        Some(more) => format!("{} and {more} more", shown.join(", ")),
     }
 }
 
@@ -110,14 +142,25 @@ impl fmt::Display for LogWarning {
                 "{file}: {topic}: {count} of {of} poses are tilted by more than 5 deg, the most by {:.1} deg; only their turn about z is read. Check that the z-axis points up from the table",
                 largest.to_degrees()
             ),
-            Self::Unlinked {
+            Self::LeftOut { file, left_out } => write!(f, "{file}: {left_out}"),
+            Self::Unread {
+                file,
+                topics,
+                messages,
+            } => write!(
+                f,
+                "{file}: not read: {messages} messages of {}. Map a topic that belongs to the log",
+                listed(topics)
+            ),
+            Self::Late {
                 file,
                 place,
                 count,
-                of,
+                longest,
             } => write!(
                 f,
-                "{file}: {place}: at {count} of {of} stamps the transforms between are not known within 0.2 s; these poses are left out. Record all transforms by one clock"
+                "{file}: {place}: {count} messages were recorded after later ones, by up to {:.1} ms; they are sorted by header.stamp. Check the clocks of what publishes them",
+                1e3 * longest
             ),
             Self::NoCovariance {
                 file,
@@ -127,15 +170,6 @@ impl fmt::Display for LogWarning {
             } => write!(
                 f,
                 "{file}: {topic}: {count} of {of} covariances of x, y and the turn about z are not symmetric and positive definite, with standard deviations of at least 1e-9; these poses get the standard deviations of the scene's [camera]. Publish zeros where the covariance is not known"
-            ),
-            Self::Elsewhere {
-                file,
-                topic,
-                at,
-                rows,
-            } => write!(
-                f,
-                "{file}: {topic}: all messages are at {at} and the poses at {rows}, so its cells are empty. Record all topics by one clock"
             ),
         }
     }

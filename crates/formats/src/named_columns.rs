@@ -185,7 +185,14 @@ impl<'a> NamedColumns<'a> {
         let missing = values.iter().position(|value| value.is_nan());
         let given = values.iter().position(|value| !value.is_nan());
         match (missing, given) {
-            (None, _) => Ok(Some(values)),
+            (None, _) => match values.iter().position(|value| value.is_infinite()) {
+                None => Ok(Some(values)),
+                Some(infinite) => Err(ColumnError::NotFinite {
+                    row,
+                    column: group.names[infinite].to_owned(),
+                    value: values[infinite],
+                }),
+            },
             (Some(_), None) => Ok(None),
             (Some(missing), Some(given)) => Err(ColumnError::Partial {
                 row,

@@ -4,14 +4,17 @@ use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use stickslip_fit::{
-    CrossValidation, Fit, FitOptions, Parameter, Push, cross_validate, default_folds,
+    CrossValidation, Fit, FitError, FitOptions, Parameter, Push, cross_validate, default_folds,
+    doubts,
 };
 
 use crate::columns::to_dict;
-use crate::error::refused;
+use crate::error::{refused, warn};
+use crate::given::Given;
 use crate::log::log_of;
+use crate::long_call::long_call;
 use crate::scene::Scene;
-use crate::threads::{on_threads, processors};
+use crate::threads::{Threads, processors};
 
 /// The items of a dict of options.
 #[derive(FromPyObject)]
@@ -26,17 +29,20 @@ pub struct Arguments {
 /// Name, scene and columns of the log.
 type PushArguments<'py> = (String, Bound<'py, Scene>, Bound<'py, PyDict>);
 
-/// The fit and its cross-validation as in fit.json, draws by name, and the first scene's text with
-/// the values in place.
-type Fitted<'py> = (String, String, Bound<'py, PyDict>, String);
+/// The fit and its cross-validation as in fit.json, draws by name, the first scene's text with the
+/// values in place, and reasons to doubt the fit.
+type Fitted<'py> = (String, String, Bound<'py, PyDict>, String, Vec<String>);
 
 /// Learns from pushes of one object on one table.
 #[pyfunction]
+#[pyo3(signature = (pushes, options, progress = None))]
 pub fn fit<'py>(
     py: Python<'py>,
     pushes: Vec<PushArguments<'py>>,
-    options: Arguments,
+    options: Given<Arguments>,
+    progress: Option<Py<PyAny>>,
 ) -> PyResult<Fitted<'py>> {
+    let options = options.0;
     let parameters = Parameter::parse_list(&options.free).map_err(refused)?;
     let fit_options = FitOptions {
         parameters,
@@ -45,23 +51,37 @@ pub fn fit<'py>(
     let scene = pushes.first().map(|(_, scene, _)| scene.clone());
     let pushes: Vec<Push> = pushes.into_iter().map(push_of).collect::<PyResult<_>>()?;
     let folds = options.folds.unwrap_or(default_folds(pushes.len()));
-    let learn = || -> Result<(Fit, Option<CrossValidation>), _> {
-        let fit = stickslip_fit::fit(&pushes, &fit_options)?;
-        let validate = || cross_validate(&pushes, folds, &fit_options);
-        Ok((fit, (folds > 0).then(validate).transpose()?))
+    let threads = Threads {
+        asked: options.threads,
+        useful: processors(),
     };
-    let learnt = py.detach(|| on_threads(options.threads, processors(), learn))?;
-    let (fit, validation) = learnt.map_err(|error: stickslip_fit::FitError| refused(error))?;
+    let learnt = long_call(py, threads, progress, |watch| {
+        // the fits of the folds take as long as the first one
+        let fits = folds as u64 + 1;
+        let of_fit = |done: u64, most: u64| watch.show(done, fits * most);
+        let fit = stickslip_fit::fit(&pushes, &fit_options, &of_fit)?;
+        let of_folds = |done: u64, most: u64| {
+            let one = most / folds as u64;
+            watch.show(one + done, one + most);
+        };
+        let validate = || cross_validate(&pushes, folds, &fit_options, &of_folds);
+        Ok((fit, (folds > 0).then(validate).transpose()?))
+    })?;
+    let learnt: Result<(Fit, Option<CrossValidation>), FitError> = learnt;
+    let (fit, validation) = learnt.map_err(refused)?;
 
     let columns = fit.draws().into_iter();
     let columns = columns.map(|(name, draws)| (name.to_owned(), draws));
     let scene = scene.expect("a fit has pushes");
     let text = fit.scene_text(&scene.get().text, &scene.get().name, validation.as_ref());
+    let warnings = doubts(&pushes, &fit);
+    warn(py, &warnings)?;
     Ok((
         json(&fit)?,
         json(&validation)?,
         to_dict(py, columns.collect())?,
         text.map_err(refused)?,
+        warnings,
     ))
 }
 

@@ -11,6 +11,7 @@ mod filter;
 mod fit;
 mod given;
 mod log;
+mod long_call;
 mod particles;
 mod program;
 mod rollout;
@@ -27,11 +28,15 @@ use pyo3::prelude::*;
 #[pymodule]
 fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("Error", module.py().get_type::<error::Error>())?;
+    module.add("Warning", module.py().get_type::<error::Warning>())?;
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add_class::<scene::Scene>()?;
     module.add_class::<tracker::Tracker>()?;
     module.add_function(wrap_pyfunction!(log::read_log, module)?)?;
     module.add_function(wrap_pyfunction!(log::write_log, module)?)?;
+    module.add_function(wrap_pyfunction!(log::bag_info, module)?)?;
+    module.add_function(wrap_pyfunction!(log::log_files, module)?)?;
+    module.add_function(wrap_pyfunction!(filter::check, module)?)?;
     module.add_function(wrap_pyfunction!(filter::filter, module)?)?;
     module.add_function(wrap_pyfunction!(fit::fit, module)?)?;
     module.add_function(wrap_pyfunction!(particles::particles, module)?)?;

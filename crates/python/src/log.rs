@@ -1,31 +1,58 @@
-//! Logs: [`read_log`], [`write_log`], and the log that a dict of columns holds, [`log_of`].
+//! Logs: [`read_log`], [`bag_info`], [`log_files`], [`write_log`], and the log that a dict of
+//! columns holds, [`log_of`].
 
-use std::io::Cursor;
+use std::path::PathBuf;
 
-use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use stickslip::Log;
-use stickslip_formats::{LogWarning, Topics, log_columns, log_of_columns};
+use stickslip_formats::{
+    BagOptions, LogWarning, TopicMapping, Topics, log_columns, log_of_columns, read_mounts,
+};
 
 use crate::columns::{Columns, to_dict};
-use crate::error::refused;
+use crate::error::{refused, warn};
+use crate::long_call::left_behind;
+use crate::scene::Scene;
 
-/// The columns of a log file's bytes: MCAP where `name` ends so, else CSV.
+/// The columns of the log at a path; of a bag by the scene's tags and by topics, as `KEY=TOPIC`.
 #[pyfunction]
-pub fn read_log<'py>(py: Python<'py>, data: &[u8], name: &str) -> PyResult<Bound<'py, PyDict>> {
-    let read = py.detach(|| {
-        if name.to_ascii_lowercase().ends_with(".mcap") {
-            let read =
-                stickslip_formats::read_log_mcap(Cursor::new(data), name, &Topics::default());
-            read.map_err(|error| error.to_string())
-        } else {
-            stickslip_formats::read_log(data, name).map_err(|error| error.to_string())
-        }
-    });
-    let (log, warnings) = read.map_err(refused)?;
+#[pyo3(signature = (path, scene = None, topics = Vec::new()))]
+pub fn read_log<'py>(
+    py: Python<'py>,
+    path: PathBuf,
+    scene: Option<&Bound<'py, Scene>>,
+    topics: Vec<String>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let mappings = topics.iter().map(|text| text.parse());
+    let mappings: Vec<TopicMapping> = mappings.collect::<Result<_, _>>().map_err(refused)?;
+    let mut options = BagOptions {
+        topics: Topics::new(mappings).map_err(refused)?,
+        ..BagOptions::default()
+    };
+    if let Some(scene) = scene.map(Bound::get) {
+        options.mounts = read_mounts(&scene.text, &scene.name).map_err(refused)?;
+        options.touch_force = scene.setup.tactile.touch_force;
+    }
+    let read = left_behind(py, move || stickslip_cli::read_log_at(&path, &options));
+    let (log, warnings) = read?.map_err(refused)?;
     warn(py, &warnings)?;
     to_dict(py, log_columns(&log))
+}
+
+/// The description of the bag at a path, as JSON.
+#[pyfunction]
+pub fn bag_info(py: Python<'_>, path: PathBuf) -> PyResult<String> {
+    let described = left_behind(py, move || stickslip_cli::bag_info(&path));
+    let (info, warnings) = described?.map_err(refused)?;
+    warn(py, &warnings)?;
+    Ok(info)
+}
+
+/// The files of the log at a path.
+#[pyfunction]
+pub fn log_files(path: PathBuf) -> PyResult<Vec<PathBuf>> {
+    stickslip_cli::log_files(&path).map_err(refused)
 }
 
 /// The bytes of log.csv for columns of a log.
@@ -44,15 +71,7 @@ pub fn write_log<'py>(
 pub fn log_of(columns: &Bound<'_, PyDict>) -> PyResult<Log> {
     let held = Columns::of(columns)?;
     let (log, warnings) = log_of_columns(&held.named()?, "log").map_err(refused)?;
+    let warnings: Vec<String> = warnings.iter().map(LogWarning::to_string).collect();
     warn(columns.py(), &warnings)?;
     Ok(log)
-}
-
-fn warn(py: Python<'_>, warnings: &[LogWarning]) -> PyResult<()> {
-    let category = py.get_type::<PyUserWarning>();
-    let module = py.import("warnings")?;
-    warnings.iter().try_for_each(|warning| {
-        module.call_method1("warn", (warning.to_string(), &category, 3))?;
-        Ok(())
-    })
 }

@@ -103,13 +103,14 @@ impl Observer for Keeper {
 /// Rows that have particles (R,), and weight, pose and friction of each, and of those that have the
 /// estimate's friction, (R * N,) row by row.
 #[pyfunction]
-#[pyo3(signature = (log, scene, options, rows = None))]
+#[pyo3(signature = (log, scene, options, rows = None, progress = None))]
 pub fn particles<'py>(
     py: Python<'py>,
     log: &Bound<'py, PyDict>,
     scene: &Bound<'py, Scene>,
     options: Given<RunArguments>,
     rows: Option<Vec<usize>>,
+    progress: Option<Py<PyAny>>,
 ) -> PyResult<(Bound<'py, PyArray1<i64>>, Bound<'py, PyDict>)> {
     let log = log_of(log)?;
     let mut rows = rows;
@@ -120,7 +121,7 @@ pub fn particles<'py>(
         rows,
         kept: Mutex::default(),
     };
-    run_log(py, scene.get(), &log, &options.0, Some(&keeper))?;
+    run_log(py, scene.get(), &log, &options.0, progress, Some(&keeper))?;
     let Kept { rows, columns, .. } = keeper
         .kept
         .into_inner()

@@ -13,19 +13,23 @@ use stickslip_dynamics::{
 };
 
 use crate::error::refused;
+use crate::given::Given;
+use crate::long_call::{Watch, long_call};
 use crate::scene::Scene;
-use crate::threads::on_threads;
+use crate::threads::Threads;
 
 /// Numbers of a pose or twist, as arrays hold them.
 type Numbers = [f64; 3];
 
-/// Arrays of a rollout, in C order; the motion is written into the last two.
+/// Step (s), threads and arrays of a rollout, in C order; the motion is written into the last two.
 ///
 /// states (N, 6), friction (N, 4), pushers (N, T + 1, 3) or (1, T + 1, 3) for all, poses and twists
 /// (N, T + 1, 3).
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
-pub struct Arrays<'py> {
+pub struct Arguments<'py> {
+    h: f64,
+    threads: Option<usize>,
     states: PyReadonlyArray2<'py, f64>,
     friction: PyReadonlyArray2<'py, f64>,
     pushers: PyReadonlyArray3<'py, f64>,
@@ -35,16 +39,16 @@ pub struct Arrays<'py> {
 
 /// Simulates the trajectories into the given arrays; returns how they ended, (N,) or (N, 2) each.
 #[pyfunction]
-#[pyo3(signature = (scene, h, arrays, threads = None))]
+#[pyo3(signature = (scene, arguments, progress = None))]
 pub fn rollout<'py>(
     py: Python<'py>,
     scene: &Bound<'py, Scene>,
-    h: f64,
-    mut arrays: Arrays<'py>,
-    threads: Option<usize>,
+    arguments: Given<Arguments<'py>>,
+    progress: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
+    let mut arrays = arguments.0;
     let rows = arrays.check()?;
-    let dynamics = &scene.get().dynamics;
+    let (dynamics, h) = (&scene.get().dynamics, arrays.h);
     let states = arrays.states.as_slice()?.as_chunks::<6>().0;
     let friction = arrays.friction.as_slice()?.as_chunks::<4>().0;
     let pushers = arrays.pushers.as_slice()?.as_chunks::<3>().0;
@@ -59,30 +63,39 @@ pub fn rollout<'py>(
         .zip(poses.par_chunks_mut(ROLLOUT_BLOCK * rows))
         .zip(twists.par_chunks_mut(ROLLOUT_BLOCK * rows))
         .enumerate();
-    let simulate = |work: &mut RolloutWork, (block, (((states, friction), poses), twists))| {
-        let first = block * ROLLOUT_BLOCK;
-        let block = Block {
-            rows,
-            pushers: if shared {
-                pushers
-            } else {
-                &pushers[first * rows..]
-            },
-            shared,
-            poses,
-            twists,
-            ends: [RolloutEnd::default(); ROLLOUT_BLOCK],
+    let threads = Threads {
+        asked: arrays.threads,
+        useful: states.len().div_ceil(ROLLOUT_BLOCK),
+    };
+    let count = states.len() as u64;
+    let simulate =
+        |watch: &Watch, work: &mut RolloutWork, (block, (((states, friction), poses), twists))| {
+            let first = block * ROLLOUT_BLOCK;
+            let block = Block {
+                rows,
+                pushers: if shared {
+                    pushers
+                } else {
+                    &pushers[first * rows..]
+                },
+                shared,
+                poses,
+                twists,
+                ends: [RolloutEnd::default(); ROLLOUT_BLOCK],
+                watch,
+            };
+            let ends = block.simulate(dynamics, h, states, friction, work);
+            watch.add(states.len() as u64);
+            ends.map_err(|error| placed(error, first))
         };
-        let ends = block.simulate(dynamics, h, states, friction, work);
-        ends.map_err(|error| placed(error, first))
-    };
-    let work = || {
+    let results = long_call(py, threads, progress, |watch| {
+        watch.show(0, count);
         blocks
-            .map_init(RolloutWork::default, simulate)
+            .map_init(RolloutWork::default, |work, block| {
+                simulate(watch, work, block)
+            })
             .collect::<Vec<_>>()
-    };
-    let useful = states.len().div_ceil(ROLLOUT_BLOCK);
-    let results = py.detach(|| on_threads(threads, useful, work))?;
+    })?;
     let ends: Vec<_> = results
         .into_iter()
         .collect::<Result<_, _>>()
@@ -106,7 +119,7 @@ fn to_dict<'py>(py: Python<'py>, ends: &[RolloutEnd]) -> PyResult<Bound<'py, PyD
     Ok(dict)
 }
 
-impl Arrays<'_> {
+impl Arguments<'_> {
     /// T + 1, where the arrays go together; the package makes them so.
     fn check(&self) -> PyResult<usize> {
         let (states, pushers) = (self.states.shape(), self.pushers.shape());
@@ -152,6 +165,7 @@ struct Block<'a> {
     twists: &'a mut [Numbers],
     /// Ends of the trajectories; those past the last trajectory mean nothing.
     ends: [RolloutEnd; ROLLOUT_BLOCK],
+    watch: &'a Watch,
 }
 
 impl Block<'_> {
@@ -185,6 +199,7 @@ impl Block<'_> {
 
 impl RolloutArrays for Block<'_> {
     fn pusher(&self, trajectory: usize, row: usize) -> Pose {
+        self.watch.check();
         let first = if self.shared {
             0
         } else {

@@ -18,6 +18,8 @@ pub struct RunArguments {
     substeps: Option<u32>,
     occlude: Option<(usize, Option<usize>)>,
     occlude_middle: Option<f64>,
+    /// True to run also if units, frames or columns are found to be wrong.
+    pub force: bool,
     pub threads: Option<usize>,
 }
 

@@ -29,8 +29,9 @@ pub struct Arguments<'py> {
 pub fn score<'py>(
     py: Python<'py>,
     estimate: &Bound<'py, PyDict>,
-    on: Arguments<'py>,
+    on: Given<Arguments<'py>>,
 ) -> PyResult<Bound<'py, PyDict>> {
+    let on = on.0;
     let setup = &on.scene.get().setup;
     let held = Columns::of(estimate)?;
     let estimate = estimate_of_columns(&held.named()?).map_err(refused)?;

@@ -8,7 +8,9 @@ use stickslip_formats::{TruthFacts, log_columns, truth_columns, write_truth_json
 use crate::columns::to_dict;
 use crate::error::refused;
 use crate::given::Given;
+use crate::long_call::long_call;
 use crate::scene::Scene;
+use crate::threads::Threads;
 
 /// The items of a dict of options.
 #[derive(FromPyObject)]
@@ -23,15 +25,17 @@ pub struct Arguments {
     d_tri: Option<f64>,
 }
 
-/// Columns of the log, columns of the truth, and truth.json.
-type Simulated<'py> = (Bound<'py, PyDict>, Bound<'py, PyDict>, String);
+/// Columns of the log, columns of the truth, truth.json, and steps without a certified solution.
+type Simulated<'py> = (Bound<'py, PyDict>, Bound<'py, PyDict>, String, usize);
 
 /// Simulates the experiment of a scene.
 #[pyfunction]
+#[pyo3(signature = (scene, options, progress = None))]
 pub fn simulate<'py>(
     py: Python<'py>,
     scene: &Bound<'py, Scene>,
     options: Given<Arguments>,
+    progress: Option<Py<PyAny>>,
 ) -> PyResult<Simulated<'py>> {
     let options = options.0;
     let known = TruthFacts {
@@ -49,15 +53,22 @@ pub fn simulate<'py>(
         pusher_memory: PUSHER_MEMORY,
     };
     let setup = &scene.get().setup;
-    let simulation = py
-        .detach(|| Simulation::run(setup, &known, &options))
-        .map_err(refused)?;
+    let threads = Threads {
+        asked: None,
+        useful: 1,
+    };
+    let simulation = long_call(py, threads, progress, |watch| {
+        let mut finished = |done: usize, all: usize| watch.show(done as u64, all as u64);
+        Simulation::run(setup, &known, &options, &mut finished)
+    })?;
+    let simulation = simulation.map_err(refused)?;
     let mut facts = Vec::new();
     write_truth_json(&mut facts, &simulation.facts)?;
     Ok((
         to_dict(py, log_columns(&simulation.log))?,
         to_dict(py, truth_columns(&simulation.truth))?,
         String::from_utf8(facts)?,
+        simulation.trace.unsolved,
     ))
 }
 

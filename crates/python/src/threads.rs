@@ -1,4 +1,4 @@
-//! The threads that work runs on: [`on_threads`].
+//! The threads that work runs on: [`Threads`].
 
 use std::num::NonZero;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -20,19 +20,24 @@ struct Kept {
 
 static KEPT: Mutex<Option<Kept>> = Mutex::new(None);
 
-/// Runs `work` on as many threads as are asked for or else on one per processor, at most `useful`.
-pub fn on_threads<T: Send>(
-    asked: Option<usize>,
-    useful: usize,
-    work: impl FnOnce() -> T + Send,
-) -> PyResult<T> {
-    if asked == Some(0) {
-        return Err(refused(
-            "0 threads are asked for; it must be 1 or more, or None for as many as help",
-        ));
+/// A number of threads: as many as are asked for or else one per processor, at most `useful`.
+#[derive(Clone, Copy, Debug)]
+pub struct Threads {
+    pub asked: Option<usize>,
+    pub useful: usize,
+}
+
+impl Threads {
+    /// The pool of these threads, which is kept for the next call.
+    pub fn pool(self) -> PyResult<Arc<ThreadPool>> {
+        if self.asked == Some(0) {
+            return Err(refused(
+                "0 threads are asked for; it must be 1 or more, or None for as many as help",
+            ));
+        }
+        let threads = self.asked.unwrap_or_else(processors);
+        pool(threads.min(self.useful).max(1))
     }
-    let threads = asked.unwrap_or_else(processors).min(useful).max(1);
-    Ok(pool(threads)?.install(work))
 }
 
 /// Processors of this machine.

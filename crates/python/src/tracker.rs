@@ -1,12 +1,17 @@
 //! One row at a time: [`Tracker`].
 
+use std::sync::{Mutex, PoisonError};
+
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use stickslip::{Estimate, PoseCovariance, Row, TrackerOptions};
+use stickslip::diagnosis::{Finding, Severity, Subject};
+use stickslip::{Estimate, PoseCovariance, Row, RowError, TrackerOptions};
 use stickslip_dynamics::Pose;
+use stickslip_evaluation::LearningFriction;
 use stickslip_formats::estimate_columns;
 
-use crate::error::refused;
+use crate::error::{refused, warn};
+use crate::filter::observed;
 use crate::given::{Given, Reading};
 use crate::run_options::{model, touch};
 use crate::scene::Scene;
@@ -23,10 +28,16 @@ fn covariance([x, y, theta, x_y, x_theta, y_theta]: [f64; 6]) -> PoseCovariance 
     }
 }
 
-/// A particle filter that takes one row at a time, on the caller's thread.
-#[pyclass(module = "stickslip._native")]
-pub struct Tracker {
+/// A particle filter that takes one row at a time, on the caller's thread. Threads wait for their
+/// turns.
+#[pyclass(frozen, module = "stickslip._native")]
+pub struct Tracker(Mutex<State>);
+
+struct State {
     tracker: stickslip::Tracker<'static>,
+    learning: LearningFriction,
+    /// Warnings that were issued, by subject and severity.
+    warned: Vec<(Subject, Severity)>,
     fixels: usize,
     has_tripod: bool,
 }
@@ -72,15 +83,18 @@ impl Tracker {
             late: options.late,
             ..TrackerOptions::default()
         };
-        Ok(Self {
-            tracker: stickslip::Tracker::new(setup, &options).map_err(refused)?,
+        let tracker = stickslip::Tracker::new(setup, &options).map_err(refused)?;
+        Ok(Self(Mutex::new(State {
+            tracker,
+            learning: LearningFriction::new(setup),
+            warned: Vec::new(),
             fixels: setup.scene.fixels.len(),
             has_tripod: setup.has_tripod(),
-        })
+        })))
     }
 
     /// Takes a row, gives the estimate at the latest one.
-    fn push<'py>(&mut self, py: Python<'py>, row: Given<Measured>) -> PyResult<Bound<'py, PyDict>> {
+    fn push<'py>(&self, py: Python<'py>, row: Given<Measured>) -> PyResult<Bound<'py, PyDict>> {
         let row = row.0;
         let pose = |[x, y, theta]: Numbers| Pose::new(x, y, theta);
         let row = Row {
@@ -95,30 +109,91 @@ impl Tracker {
                 .collect(),
             force: row.force,
         };
-        let tracker = &mut self.tracker;
-        py.detach(|| tracker.push(&row).map(|_| ()))
-            .map_err(refused)?;
-        self.estimate(py)
+        let pushed = self.with(py, |state| {
+            state.tracker.push(&row)?;
+            state.learning.add(state.tracker.estimate());
+            Ok((state.new_doubts(), state.estimate()))
+        });
+        let (doubts, estimate) = pushed.map_err(|error: RowError| refused(error))?;
+        warn(py, &doubts)?;
+        to_numbers(py, &estimate)
     }
 
     /// The estimate at the latest row.
     fn estimate<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let one = Estimate {
-            time: vec![self.tracker.time().unwrap_or(f64::NAN)],
-            rows: vec![self.tracker.estimate().clone()],
-            fixels: self.fixels,
-            has_tripod: self.has_tripod,
-        };
-        let numbers = PyDict::new(py);
-        for (name, column) in estimate_columns(&one) {
-            numbers.set_item(name, column[0])?;
-        }
-        Ok(numbers)
+        to_numbers(py, &self.with(py, |state| state.estimate()))
+    }
+
+    /// Reasons to doubt the estimates so far.
+    #[getter]
+    fn warnings(&self, py: Python<'_>) -> Vec<String> {
+        let doubts = self.with(py, |state| state.tracker.doubts());
+        doubts.iter().map(Finding::to_string).collect()
+    }
+
+    /// Friction parameters, identified or not.
+    #[getter]
+    fn observed<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        observed(py, &self.with(py, |state| state.learning.parameters()))
+    }
+
+    /// ln of the evidence of the rows so far.
+    #[getter]
+    fn log_evidence(&self, py: Python<'_>) -> f64 {
+        self.with(py, |state| state.tracker.log_evidence())
+    }
+
+    /// Re-simulations so far.
+    #[getter]
+    fn resimulations(&self, py: Python<'_>) -> u32 {
+        self.with(py, |state| state.tracker.second_tries())
     }
 
     /// Rows at which no particle explained the camera.
     #[getter]
-    fn collapses(&self) -> u32 {
-        self.tracker.collapses()
+    fn collapses(&self, py: Python<'_>) -> u32 {
+        self.with(py, |state| state.tracker.collapses())
     }
+}
+
+impl Tracker {
+    /// Result of `work` on the tracker, once no other thread has it; without the interpreter's
+    /// lock.
+    fn with<T: Send>(&self, py: Python<'_>, work: impl FnOnce(&mut State) -> T + Send) -> T {
+        py.detach(|| work(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner)))
+    }
+}
+
+impl State {
+    /// Doubts of a kind or severity that there was none of before.
+    fn new_doubts(&mut self) -> Vec<String> {
+        let mut new = Vec::new();
+        for doubt in self.tracker.doubts() {
+            let kind = (doubt.subject, doubt.severity);
+            if !self.warned.contains(&kind) {
+                self.warned.push(kind);
+                new.push(doubt.to_string());
+            }
+        }
+        new
+    }
+
+    /// The latest row alone.
+    fn estimate(&self) -> Estimate {
+        Estimate {
+            time: vec![self.tracker.time().unwrap_or(f64::NAN)],
+            rows: vec![self.tracker.estimate().clone()],
+            fixels: self.fixels,
+            has_tripod: self.has_tripod,
+        }
+    }
+}
+
+/// The numbers of an estimate's only row by the names of columns.
+fn to_numbers<'py>(py: Python<'py>, one: &Estimate) -> PyResult<Bound<'py, PyDict>> {
+    let numbers = PyDict::new(py);
+    for (name, column) in estimate_columns(one) {
+        numbers.set_item(name, column[0])?;
+    }
+    Ok(numbers)
 }

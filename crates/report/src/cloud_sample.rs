@@ -44,6 +44,10 @@ impl CloudSample {
 impl Observer for CloudSample {
     fn on_step(&self, _: &SolvedStep<'_>) {}
 
+    fn wants_steps(&self) -> bool {
+        false
+    }
+
     fn on_row(&self, row: usize, cloud: &ParticleView<'_>) {
         let poses = systematic(cloud.weights(), self.kept)
             .into_iter()

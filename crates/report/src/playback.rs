@@ -122,6 +122,11 @@ impl Playback {
             truth: None,
             sensed: sensed.cloned(),
         };
+        let known: Vec<Option<Pose>> = log
+            .time
+            .iter()
+            .map(|time| reference.pose_at(*time))
+            .collect();
         let fixels =
             (0..scene.fixels.len()).map(|k| touch(format!("fixel {}", k + 1), log.tactile.get(k)));
         Self {
@@ -136,13 +141,9 @@ impl Playback {
                 .iter()
                 .map(|fixel| Outline::new(&fixel.shape, f64::INFINITY).at(&fixel.pose))
                 .collect(),
-            reference: log
-                .time
-                .iter()
-                .map(|time| reference.pose_at(*time))
-                .collect(),
+            reference: held(&known, &log.object_out_of_sight()),
             reference_name: "truth".to_owned(),
-            pusher_poses: log.pusher.clone(),
+            pusher_poses: held(&log.pusher, &log.pusher_out_of_sight()),
             hidden,
             touches: std::iter::once(touch("pusher".to_owned(), None))
                 .chain(fixels)
@@ -232,6 +233,18 @@ impl Playback {
     pub(crate) fn stride(&self) -> usize {
         self.time.len().div_ceil(MOST_ROWS).max(1)
     }
+}
+
+/// Poses of every row in which a body is seen: those of rows that another sensor brought are the
+/// ones before.
+fn held(poses: &[Option<Pose>], out_of_sight: &[bool]) -> Vec<Option<Pose>> {
+    let mut latest = None;
+    let rows = poses.iter().zip(out_of_sight);
+    rows.map(|(pose, unseen)| {
+        latest = pose.or(latest);
+        pose.or(latest.filter(|_| !unseen))
+    })
+    .collect()
 }
 
 fn controls() -> Markup {

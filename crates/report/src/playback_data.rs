@@ -186,8 +186,8 @@ fn contact(touch: &Touch, rows: Rows) -> Value {
 }
 
 /// Left, low, width and height (mm) of the box that contains the object and the pusher in the part
-/// that is played first, and the fixels. Without a reference, the object's way is that of the run whose contacts are
-/// shown, or of the first run.
+/// that is played first, and the fixels. Without a reference, the object's way is that of the run
+/// whose contacts are shown, or of the first run.
 fn view(playback: &Playback) -> [f64; 4] {
     let rows = playback.focus.clone();
     let swept = |outline: &Outline, poses: &[Option<Pose>]| -> Vec<[f64; 2]> {

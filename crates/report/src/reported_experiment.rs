@@ -117,7 +117,8 @@ impl<'a> ReportedExperiment<'a> {
         };
         let off = self.occluded();
         let within = |row: &usize| off.is_some_and(|[from, to]| (from..to).contains(row));
-        let lost = (0..self.log.len()).filter(|row| self.log.object[*row].is_none());
+        let unseen = self.log.object_out_of_sight();
+        let lost = (0..self.log.len()).filter(|row| unseen[*row]);
         Story {
             what: self.what.clone(),
             duration: self.log.duration(),
@@ -308,9 +309,8 @@ impl<'a> ReportedExperiment<'a> {
 
     /// For each row, true if the methods get no pose of the object.
     pub(crate) fn blind(&self) -> Vec<bool> {
-        let rows = self.hidden.iter().zip(&self.log.object);
-        rows.map(|(hidden, pose)| *hidden || pose.is_none())
-            .collect()
+        let rows = self.hidden.iter().zip(self.log.object_out_of_sight());
+        rows.map(|(hidden, unseen)| *hidden || unseen).collect()
     }
 
     /// Occluded rows from..to, with the rows next to them in which the camera lost the object.

@@ -1,5 +1,6 @@
 //! Tables with aligned columns, as text and as HTML: [`Table`].
 
+use std::borrow::Cow;
 use std::fmt;
 
 use maud::{Markup, html};
@@ -60,14 +61,21 @@ impl Table {
         std::iter::once(&self.titles).chain(self.rows.iter().map(|(_, cells)| cells))
     }
 
-    fn width(&self, column: usize) -> usize {
-        self.all_rows()
-            .filter_map(|row| row.get(column))
-            .map(|cell| cell.chars().count())
-            .max()
-            .unwrap_or(0)
+    /// Widths of all columns as text.
+    fn widths(&self) -> Vec<usize> {
+        let mut widths = Vec::new();
+        for row in self.all_rows() {
+            widths.resize(row.len().max(widths.len()), 0);
+            for (width, cell) in widths.iter_mut().zip(row) {
+                *width = cell.chars().count().min(WIDEST).max(*width);
+            }
+        }
+        widths
     }
 }
+
+/// Most characters of a cell as text; the rest of a longer one is cut off.
+const WIDEST: usize = 160;
 
 /// A small patch of a colour.
 pub(crate) fn swatch(colour: Colour) -> Markup {
@@ -76,14 +84,24 @@ pub(crate) fn swatch(colour: Colour) -> Markup {
 
 impl fmt::Display for Table {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let widths = self.widths();
         for row in self.all_rows() {
             let cells = row
                 .iter()
+                .zip(&widths)
                 .enumerate()
-                .map(|(column, cell)| aligned(cell, self.width(column), column == 0));
+                .map(|(column, (cell, width))| aligned(&short(cell), *width, column == 0));
             writeln!(f, "{}", cells.collect::<Vec<_>>().join("  ").trim_end())?;
         }
         Ok(())
+    }
+}
+
+/// A cell that is no wider than [`WIDEST`].
+fn short(cell: &str) -> Cow<'_, str> {
+    match cell.char_indices().nth(WIDEST) {
+        None => Cow::Borrowed(cell),
+        Some(_) => Cow::Owned(cell.chars().take(WIDEST - 1).chain(['…']).collect()),
     }
 }
 
@@ -104,6 +122,19 @@ pub fn number(value: Option<f64>, decimals: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn long_cell_is_cut_off() {
+        let mut table = Table::new(["topic", "count"]);
+        table.push(["n".repeat(70_000), "1".to_owned()]);
+        let text = table.to_string();
+        assert!(
+            text.lines().all(|line| line.chars().count() <= 167),
+            "{}",
+            text.len()
+        );
+        assert!(text.contains("n…      1"), "{text}");
+    }
 
     #[test]
     fn table_aligns_columns() {

@@ -24,6 +24,18 @@ impl Model {
     /// # Errors
     /// [`TrialError`]: the camera's rate or a friction value is none, bodies overlap at the start.
     pub fn run(&self, trial: &Trial<'_>) -> Result<Trace, TrialError> {
+        self.run_observed(trial, &mut |_| ())
+    }
+
+    /// Runs an experiment like [`run`](Self::run); `progress` gets the number of finished frames.
+    ///
+    /// # Errors
+    /// Those of [`run`](Self::run).
+    pub fn run_observed(
+        &self,
+        trial: &Trial<'_>,
+        progress: &mut dyn FnMut(usize),
+    ) -> Result<Trace, TrialError> {
         let Friction {
             mu_s, mu_p, mu_f, ..
         } = self.friction;
@@ -38,6 +50,7 @@ impl Model {
             (trial.start.pusher, StepWork::<1>::default(), 0);
         let mut frames = vec![frame(trial, 0, &object, pusher, Vec::new())];
         for k in 1..trial.frames() {
+            progress(k);
             let twist = trial
                 .start
                 .commanded(trial.time(k - 1))

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from stickslip import _native
-from stickslip._columns import Columns
+from stickslip._columns import Columns, columns_of
 from stickslip._native import Error, Scene
 
 
@@ -23,7 +23,7 @@ def write_experiment(
     """
     folder = Path(folder)
     Scene(scene, str(folder / "scene.toml"))
-    text = _native.write_log(log)
+    text = _native.write_log(columns_of(log, "the log"))
     if folder.exists() and any(folder.iterdir()):
         raise Error(f"{folder} is not empty; give a new folder, so that nothing recorded is lost")
     folder.mkdir(parents=True, exist_ok=True)

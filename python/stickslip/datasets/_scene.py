@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import tomllib
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from stickslip._columns import numbers
 from stickslip._native import Error, Scene
 
 
@@ -17,7 +20,7 @@ def uniform_plate(polygon: ArrayLike, mass: float) -> tuple[NDArray[np.float64],
     to the centre of mass as origin (K, 2), that centre in the given frame (2,), and the moment of
     inertia about it (kg m^2).
     """
-    a = np.asarray(polygon, dtype=np.float64)
+    a = numbers(polygon, "polygon")
     if a.ndim != 2 or a.shape[1] != 2 or len(a) < 3:
         raise Error(f"the polygon has the shape {a.shape}; it must be (K, 2) with K at least 3")
     b = np.roll(a, -1, axis=0)
@@ -54,32 +57,18 @@ def scene_text(
     """
     parts = [shape] if isinstance(shape, str) else list(shape)
     if parts and not isinstance(parts[0], str):
-        corners = ", ".join(f"[{x!r}, {y!r}]" for x, y in np.asarray(parts, dtype=np.float64).tolist())
-        parts = [f"{{ polygon = [{corners}] }}"]
-    radius = float(np.sqrt(inertia / mass)) if tripod_radius is None else tripod_radius
-    text = f"""\
-gravity = 9.81
-
-[object]
-mass = {mass!r}
-inertia = {inertia!r}
-shape = [ {", ".join(parts)} ]
-
-[support]
-friction = {friction!r}
-tripod_radius = {radius!r}
-
-[pusher]
-shape = [ {{ disc = {{ radius = {pusher_radius!r} }} }} ]
-friction = {pusher_friction!r}
-
-[fixels]
-friction = 0.25
-
-[camera]
-position_std = {position_std!r}
-orientation_std = {orientation_std!r}
-latency = {latency!r}
-"""
-    Scene(text)
-    return text
+        outline: list[Any] = [{"polygon": numbers(parts, "shape")}]
+    else:
+        outline = tomllib.loads(f"shape = [ {', '.join(parts)} ]")["shape"]
+    scene = Scene.from_numbers(
+        gravity=9.81,
+        object={"mass": mass, "inertia": inertia, "shape": outline},
+        support={
+            "friction": friction,
+            "tripod_radius": np.sqrt(inertia / mass) if tripod_radius is None else tripod_radius,
+        },
+        pusher={"shape": [{"disc": {"radius": pusher_radius}}], "friction": pusher_friction},
+        fixels={"friction": 0.25},
+        camera={"position_std": position_std, "orientation_std": orientation_std, "latency": latency},
+    )
+    return scene.text

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip._columns import Columns
+from stickslip._columns import Columns, numbers
 from stickslip._native import Error
 
 #: Longest time between two samples for interpolation (s), as in the format.
@@ -29,7 +29,7 @@ class Stream:
     @classmethod
     def of(cls, rows: ArrayLike, name: str) -> Stream:
         """Makes a stream of rows (n, 1 + k), time first: sorted, with the first of equal times."""
-        table = np.asarray(rows, dtype=np.float64)
+        table = numbers(rows, name)
         if table.ndim != 2 or table.shape[1] < 2 or not len(table):
             raise Error(f"{name} has the shape {table.shape}; it must be rows of a time and numbers, at least one")
         if not np.isfinite(table).all():
@@ -84,8 +84,8 @@ def planar(position: ArrayLike, quaternion: ArrayLike, body: ArrayLike | None = 
     frame. ``body`` (4, 4): pose of the object in the tracked frame, in the same unit, if the two
     differ.
     """
-    place = np.asarray(position, dtype=np.float64)
-    w, x, y, z = np.moveaxis(np.asarray(quaternion, dtype=np.float64), -1, 0)
+    place = numbers(position, "position")
+    w, x, y, z = np.moveaxis(numbers(quaternion, "quaternion"), -1, 0)
     scale = 2 / (w * w + x * x + y * y + z * z)
     turn = np.stack(
         [
@@ -95,7 +95,7 @@ def planar(position: ArrayLike, quaternion: ArrayLike, body: ArrayLike | None = 
         ],
         axis=-2,
     )
-    offset = np.eye(4) if body is None else np.asarray(body, dtype=np.float64)
+    offset = np.eye(4) if body is None else numbers(body, "body")
     place = place + turn @ offset[:3, 3]
     turn = turn @ offset[:3, :3]
     return np.column_stack([place[:, 0], place[:, 1], np.arctan2(turn[:, 1, 0], turn[:, 0, 0])])

@@ -7,7 +7,7 @@ use std::process::Output;
 
 use crate::common::{Experiment, STOP, json, stickslip};
 use stickslip::Log;
-use stickslip_formats::{Topics, read_log, write_log_mcap};
+use stickslip_formats::{Topics, read_estimate, read_log, write_log, write_log_mcap};
 
 /// The rows of a log from `from` on up to `to`.
 fn rows(log: &Log, from: usize, to: usize) -> Log {
@@ -234,4 +234,143 @@ fn info_says_that_nothing_is_left_of_a_bag_cut_off_at_its_beginning() {
     assert_eq!(run.status.code(), Some(3), "{}", words(&run));
     let text = String::from_utf8(run.stdout.clone()).unwrap();
     assert!(text.starts_with("No message can be read: "), "{text}");
+}
+
+#[test]
+fn bag_that_was_reindexed_is_read_by_the_endings_of_its_files() {
+    let (case, bag) = experiment("bags/reindexed");
+    fs::remove_file(case.log()).unwrap();
+    let metadata = fs::read_to_string(bag.join("metadata.yaml")).unwrap();
+    for storage in ["\"\"", "~", "''"] {
+        let reindexed = metadata.replace("_identifier: mcap", &format!("_identifier: {storage}"));
+        assert_ne!(reindexed, metadata);
+        fs::write(bag.join("metadata.yaml"), &reindexed).unwrap();
+        let run = filter(&bag);
+        assert_eq!(run.status.code(), Some(0), "{}", words(&run));
+        let old = reindexed.replace(".mcap", ".db3");
+        fs::write(bag.join("metadata.yaml"), old).unwrap();
+        let run = filter(&bag);
+        assert!(
+            words(&run).contains("this is a bag in SQLite"),
+            "{}",
+            words(&run)
+        );
+    }
+}
+
+/// A camera at 30 Hz and a pusher at 5 Hz, each row with what was measured at its time.
+fn two_rates(log: &Log) -> Log {
+    let keeps = |row: usize| row % 6 == 1;
+    let mut log = log.clone();
+    for row in 0..log.len() {
+        if keeps(row) {
+            log.object[row] = None;
+        } else {
+            log.pusher[row] = None;
+        }
+    }
+    log
+}
+
+#[test]
+fn bag_and_table_of_the_same_measurements_give_the_same_estimate() {
+    let case = Experiment::copy(STOP, "bags/rates");
+    let (log, _) = read_log(fs::read(case.log()).unwrap().as_slice(), "log.csv").unwrap();
+    let log = two_rates(&log);
+    let (table, bag) = (
+        case.folder.join("table.csv"),
+        case.folder.join("rates.mcap"),
+    );
+    write_log(fs::File::create(&table).unwrap(), &log).unwrap();
+    let mut bytes = Cursor::new(Vec::new());
+    write_log_mcap(&mut bytes, &log, &Topics::default()).unwrap();
+    fs::write(&bag, bytes.into_inner()).unwrap();
+    let estimate = |log: &Path| {
+        let out = case.folder.join("out");
+        let mut command = stickslip();
+        command
+            .arg("filter")
+            .arg(log)
+            .args(["--particles", "64", "--occlude", "200:"]);
+        let run = command.arg("--out").arg(&out).output().unwrap();
+        assert_eq!(run.status.code(), Some(0), "{}", words(&run));
+        let bytes = fs::read(out.join("estimate.csv")).unwrap();
+        read_estimate(bytes.as_slice(), "estimate.csv").unwrap()
+    };
+    let (of_table, of_bag) = (estimate(&table), estimate(&bag));
+    assert_eq!(of_table.rows.len(), of_bag.rows.len());
+    for (a, b) in of_table.rows.iter().zip(&of_bag.rows) {
+        let apart = a
+            .pose
+            .zip(b.pose)
+            .map_or(0.0, |(a, b)| (a.x - b.x).hypot(a.y - b.y));
+        assert!(apart < 1e-6, "{apart}");
+    }
+}
+
+#[test]
+fn recording_of_two_runs_is_refused_and_read_in_parts() {
+    let case = Experiment::copy(STOP, "bags/runs");
+    let (log, _) = read_log(fs::read(case.log()).unwrap().as_slice(), "log.csv").unwrap();
+    // a simulation that began again, recorded by the wall clock
+    let bag = case.folder.join("runs");
+    fs::create_dir(&bag).unwrap();
+    for (k, late) in [10.0, 100.0].into_iter().enumerate() {
+        let mut bytes = Cursor::new(Vec::new());
+        write_log_mcap(&mut bytes, &log, &Topics::default()).unwrap();
+        let bytes = with_log_times(&bytes.into_inner(), late);
+        fs::write(bag.join(format!("runs_{k}.mcap")), bytes).unwrap();
+    }
+    let run = filter(&bag);
+    assert_eq!(run.status.code(), Some(1));
+    let told = words(&run);
+    assert!(
+        told.contains(
+            "/object/pose, message 1 (log time 100.000000000 s): header.stamp jumps back"
+        ),
+        "{told}"
+    );
+    let help = told.lines().last().unwrap();
+    let (to, from) = help.split_once(", or ").unwrap();
+    let to = to.split_once("--to ").unwrap().1;
+    let from = from.strip_prefix("--from ").unwrap();
+    for part in [["--to", to], ["--from", from]] {
+        let mut command = stickslip();
+        command
+            .arg("filter")
+            .arg(&bag)
+            .args(["--method", "kalman", "--json"]);
+        let run = command.args(part).output().unwrap();
+        assert_eq!(run.status.code(), Some(0), "{part:?} {}", words(&run));
+        let result: serde_json::Value = serde_json::from_slice(&run.stdout).unwrap();
+        assert_eq!(result["frames"], log.len());
+    }
+    let swapped = stickslip()
+        .arg("check")
+        .arg(&bag)
+        .args(["--to", "1", "--from", "2"])
+        .output();
+    assert_eq!(swapped.unwrap().status.code(), Some(2));
+}
+
+/// The messages of a recording with log times from `start` on (s).
+fn with_log_times(bytes: &[u8], start: f64) -> Vec<u8> {
+    let messages = mcap::MessageStream::new(bytes).unwrap();
+    let messages: Vec<_> = messages.map(Result::unwrap).collect();
+    let first = messages[0].log_time;
+    let mut writer = mcap::Writer::new(Cursor::new(Vec::new())).unwrap();
+    for message in messages {
+        let log_time = message.log_time - first + (1e9 * start) as u64;
+        let message = mcap::Message {
+            log_time,
+            publish_time: log_time,
+            ..message
+        };
+        // touches have no other time
+        if message.channel.topic.ends_with("/pose") {
+            writer.write(&message).unwrap();
+        }
+    }
+    writer.finish().unwrap();
+    writer.into_inner().into_inner()
 }

@@ -157,3 +157,64 @@ fn fit_refuses_with_the_next_step() {
     );
     assert!(!out.exists(), "a fit that was refused leaves nothing");
 }
+
+#[test]
+fn push_that_touches_nothing_is_no_push() {
+    let folder = pushes("fit/untouched", 2);
+    let log = folder.join("pushes/push-1/log.csv");
+    let text = fs::read_to_string(&log).unwrap();
+    // as long as the object rests, the pusher 5 cm away
+    let away = |line: &str| {
+        let cell = |(k, cell): (usize, &str)| match cell.parse::<f64>() {
+            Ok(number) if k == 5 => (number - 0.05).to_string(),
+            _ => cell.to_owned(),
+        };
+        line.split(',')
+            .enumerate()
+            .map(cell)
+            .collect::<Vec<_>>()
+            .join(",")
+    };
+    let early: Vec<String> = text.lines().take(6).map(away).collect();
+    fs::write(&log, early.join("\n") + "\n").unwrap();
+    let run = fit(&folder.join("pushes"), &folder.join("out"))
+        .output()
+        .unwrap();
+    let told = String::from_utf8_lossy(&run.stderr);
+    assert_eq!(run.status.code(), Some(1), "{told}");
+    assert!(
+        told.contains("push-1: nothing touches the object") && told.contains("leave it out"),
+        "{told}"
+    );
+}
+
+#[test]
+fn push_that_filter_refuses_is_refused_unless_forced() {
+    let folder = pushes("fit/millimetres", 2);
+    let log = folder.join("pushes/push-1/log.csv");
+    let text = fs::read_to_string(&log).unwrap();
+    let scaled = |line: &str| {
+        let cell = |(k, cell): (usize, &str)| match cell.parse::<f64>() {
+            Ok(number) if [1, 2, 4, 5].contains(&k) => (1e3 * number).to_string(),
+            _ => cell.to_owned(),
+        };
+        line.split(',')
+            .enumerate()
+            .map(cell)
+            .collect::<Vec<_>>()
+            .join(",")
+    };
+    let lines: Vec<String> = text.lines().map(scaled).collect();
+    fs::write(&log, lines.join("\n") + "\n").unwrap();
+    let run = fit(&folder.join("pushes"), &folder.join("out"))
+        .output()
+        .unwrap();
+    let told = String::from_utf8_lossy(&run.stderr);
+    assert_eq!(run.status.code(), Some(1), "{told}");
+    assert!(
+        told.contains("push-1") && told.contains("millimetres") && told.contains("--force"),
+        "{told}"
+    );
+    let mut forced = fit(&folder.join("pushes"), &folder.join("out"));
+    succeeds(forced.args(["--force", "--folds", "0"]));
+}

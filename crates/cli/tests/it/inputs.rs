@@ -158,7 +158,7 @@ fn compare_takes_topics() {
         let run = command.output().unwrap();
         String::from_utf8(run.stderr).unwrap()
     };
-    assert!(bag("object=/box").contains("--topic is for MCAP logs"));
+    assert!(bag("object=/box").contains("topics are for MCAP logs"));
     assert!(bag("nobody=/box").contains("none of the keys"));
 }
 

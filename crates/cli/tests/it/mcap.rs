@@ -126,7 +126,7 @@ fn topics_are_named_on_the_command_line() {
     }
     let csv = check(&case.log(), &["object=/a"]);
     assert!(
-        csv.status.code() == Some(1) && words(&csv).contains("--topic is for MCAP logs"),
+        csv.status.code() == Some(1) && words(&csv).contains("topics are for MCAP logs"),
         "{}",
         words(&csv)
     );

@@ -8,7 +8,8 @@ use super::two_places::TwoPlaces;
 use crate::angle::nearest_winding;
 use crate::gap::gap;
 use crate::log::Log;
-use crate::pusher::tracked_pose::LONGEST_BRIDGE;
+use crate::particle::pose_clock::TELLING;
+use crate::pusher::tracked_pose::bridged;
 use crate::setup::Setup;
 
 /// Half the time over which an object's motion is judged (s).
@@ -41,6 +42,8 @@ pub(super) struct Evidence<'a> {
     pub seen: Vec<usize>,
     /// Rows with a pusher pose.
     pusher_seen: Vec<usize>,
+    /// Typical time from one pusher pose to the next (s); `None` with too few poses.
+    pusher_interval: Option<f64>,
     /// Rows in which the object moves.
     pub moving: Vec<bool>,
 }
@@ -52,6 +55,9 @@ impl<'a> Evidence<'a> {
             let rows = 0..poses.len();
             rows.filter(|row| poses[*row].is_some()).collect()
         };
+        let pusher_seen: Vec<usize> = rows_with(&log.pusher);
+        let steps = pusher_seen.array_windows();
+        let steps: Vec<f64> = steps.map(|[a, b]| log.time[*b] - log.time[*a]).collect();
         let mut evidence = Self {
             setup,
             log,
@@ -60,7 +66,8 @@ impl<'a> Evidence<'a> {
             two_places: None,
             lasting: None,
             seen: rows_with(&log.object),
-            pusher_seen: rows_with(&log.pusher),
+            pusher_seen,
+            pusher_interval: crate::quantile(&steps, 0.5).filter(|_| steps.len() >= TELLING),
             moving: Vec::new(),
         };
         evidence.two_places = TwoPlaces::of(&evidence);
@@ -101,18 +108,17 @@ impl<'a> Evidence<'a> {
     pub fn pusher_at(&self, time: f64) -> Option<Pose> {
         let seen = &self.pusher_seen;
         let split = seen.partition_point(|row| self.log.time[*row] < time);
-        let near = |index: usize| {
+        let at = |index: usize| {
             let row = *seen.get(index)?;
-            let at = self.log.time[row];
-            let pose = self.log.pusher[row]?;
-            ((at - time).abs() <= LONGEST_BRIDGE).then_some((at, pose))
+            Some((self.log.time[row], self.log.pusher[row]?))
         };
-        let (t1, after) = near(split)?;
+        let (t1, after) = at(split)?;
         if t1 - time < 1e-9 {
             return Some(after);
         }
-        let (t0, before) = near(split.checked_sub(1)?)?;
-        (t1 - t0 <= LONGEST_BRIDGE).then(|| before.interpolate(after, (time - t0) / (t1 - t0)))
+        let (t0, before) = at(split.checked_sub(1)?)?;
+        bridged(t0, t1, self.pusher_interval)
+            .then(|| before.interpolate(after, (time - t0) / (t1 - t0)))
     }
 
     /// Gap of object and pusher at `row` if its object pose is `delay` late (m).

@@ -10,13 +10,17 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
     let believed = believed(log, evidence.setup.camera.as_ref());
     let is_left_out = |row: &usize| log.pusher[*row].is_some() && believed[*row].is_none();
     let left_out: Vec<usize> = (0..log.len()).filter(is_left_out).collect();
-    let Some(first) = left_out.first() else {
-        return Vec::new();
-    };
+    let first = left_out.first();
+    let place = first.map_or(String::new(), |row| format!(", first in row {row}"));
+    left_out_poses(left_out.len(), &place).into_iter().collect()
+}
+
+/// Finds that so many poses of the pusher were left out, with the place of the first one in words.
+pub(crate) fn left_out_poses(count: usize, place: &str) -> Option<Finding> {
     let found = format!(
-        "{} that the pusher cannot have reached, first in row {first}: counted as missing",
-        counted(left_out.len() as u64, "pusher pose")
+        "{} that the pusher cannot have reached{place}: counted as missing",
+        counted(count as u64, "pusher pose")
     );
     let advice = "find the cause (a tag misread, a clock that jumps); the pusher's motion between rare poses is a guess";
-    vec![Finding::warning(Subject::PusherPoses, found, advice)]
+    (count > 0).then(|| Finding::warning(Subject::PusherPoses, found, advice))
 }

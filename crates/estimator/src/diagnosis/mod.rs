@@ -30,11 +30,13 @@ mod units;
 
 pub use collapses::collapsed;
 pub use finding::{Finding, Severity, Subject};
+pub(crate) use left_out::left_out_poses;
 pub use stall_force::assumed_stall_force;
 
 use evidence::{Evidence, unwrapped};
 
 use crate::log::Log;
+use crate::run::Run;
 use crate::setup::Setup;
 
 /// Checks a log against its scene.
@@ -98,6 +100,11 @@ pub fn refused(setup: &Setup, log: &Log) -> Option<Finding> {
         .find(|finding| finding.severity == Severity::Problem)
 }
 
+/// Finds a log in which nothing touches the object: it shows neither contact nor friction.
+pub fn untouched(setup: &Setup, log: &Log) -> Option<Finding> {
+    contact::none(&Evidence::new(setup, &unwrapped(log)))
+}
+
 /// Finds the problems that are cheap enough to check before every run: numbers in other units or by
 /// other clocks, bodies that overlap at the start. An estimate and its scores mean nothing with
 /// them.
@@ -118,6 +125,14 @@ pub fn misread(setup: &Setup, log: &Log) -> Vec<Finding> {
         findings.extend(noise::pusher(&evidence));
         findings.extend(contact::none(&evidence));
     }
+    findings
+}
+
+/// Finds reasons to doubt the estimate of a run: those of [`misread`] and of [`collapsed`].
+pub fn doubts(setup: &Setup, log: &Log, run: &Run) -> Vec<Finding> {
+    let seen = run.estimate.rows.iter().filter(|row| row.visual).count();
+    let mut findings = misread(setup, log);
+    findings.extend(collapsed(run.collapses, seen));
     findings
 }
 

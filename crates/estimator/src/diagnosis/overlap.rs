@@ -4,6 +4,7 @@ use stickslip_dynamics::Pose;
 
 use super::evidence::{Evidence, mm};
 use super::finding::{Finding, Subject};
+use crate::pusher::tracked_pose::LONGEST_BRIDGE;
 
 pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
     let Some(row) = evidence.log.object.iter().position(Option::is_some) else {
@@ -13,8 +14,15 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
         return Vec::new();
     };
     let scene = &evidence.setup.scene;
-    let pusher =
-        evidence.log.pusher[row].and_then(|at| evidence.gap_to(object, &scene.pusher.shape, at));
+    // the pusher may be measured at other times than the object
+    let until = evidence.log.time[row] + LONGEST_BRIDGE;
+    let first = evidence
+        .seen
+        .iter()
+        .take_while(|row| evidence.log.time[**row] <= until);
+    let pusher = first
+        .into_iter()
+        .find_map(|row| evidence.pusher_gap(*row, 0.0));
     let fixels = scene
         .fixels
         .iter()

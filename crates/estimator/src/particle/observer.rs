@@ -30,8 +30,15 @@ pub trait Observer: Debug + Sync {
     /// Takes one step.
     fn on_step(&self, step: &SolvedStep<'_>);
 
+    /// Returns false if [`on_step`](Self::on_step) ignores its steps. They are then not put
+    /// together, which takes longer than solving them.
+    fn wants_steps(&self) -> bool {
+        true
+    }
+
     /// Takes the start of the coming step of up to 128 particles, noise included. Lanes past the
-    /// last particle hold any numbers.
+    /// last particle hold any numbers. It is also the place to abandon a run, by
+    /// [`std::panic::resume_unwind`].
     fn before_step(&self, input: &StepInput, particles: &[Particles<LANES>]) {
         let _ = (input, particles);
     }

@@ -162,7 +162,7 @@ impl Propagation {
                 #[inline(always)]
                 || self.note_contacts(transition, chunks),
             );
-            if let Some(observer) = transition.observer {
+            if let Some(observer) = transition.observer.filter(|o| o.wants_steps()) {
                 self.show(observer, block.len());
             }
         }

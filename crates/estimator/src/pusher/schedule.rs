@@ -7,9 +7,9 @@ use crate::pusher::track::PusherTrack;
 /// Length above which a step is split (s).
 const LONGEST_STEP: f64 = 0.055;
 
-/// Length of the shortest step (s). A step moves overlapping bodies apart within its time: in a
-/// shorter one, a small overlap would throw them apart.
-pub(crate) const SHORTEST_STEP: f64 = 5e-4;
+/// Length of the shortest step from row to row (s). A step moves overlapping bodies apart within
+/// its time: in a shorter one, a small overlap would throw them apart.
+pub const SHORTEST_STEP: f64 = 5e-4;
 
 /// Length that the parts of a split step do not exceed (s).
 const SPLIT_TO: f64 = 0.05;

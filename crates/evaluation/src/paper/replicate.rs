@@ -117,7 +117,7 @@ impl Replicate {
             repeats,
             pusher_memory,
         };
-        let simulation = Simulation::run(&setup, &known, &options)?;
+        let simulation = Simulation::run(&setup, &known, &options, &mut |_, _| ())?;
         Ok(Self {
             paper,
             seed,

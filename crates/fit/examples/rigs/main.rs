@@ -52,7 +52,7 @@ fn main() {
     );
     for seed in first..first + count {
         let rig = RandomRig::new(support, seed, PUSHES[seed as usize % PUSHES.len()]);
-        let fit = fit(&rig.pushes, &options).expect("a fit");
+        let fit = fit(&rig.pushes, &options, &|_, _| ()).expect("a fit");
         let of_rig = compared(&fit, [rig.mu_p, rig.d_tri]);
         println!(
             "{seed} {} {:.5} {}",

@@ -107,7 +107,8 @@ fn simulated(setup: &Setup, physics: Physics, seed: u64) -> Option<(stickslip::L
         repeats: 0.0,
         pusher_memory: PUSHER_MEMORY,
     };
-    let simulation = Simulation::run(setup, &TruthFacts::default(), &options).ok()?;
+    let simulation =
+        Simulation::run(setup, &TruthFacts::default(), &options, &mut |_, _| ()).ok()?;
     let facts = simulation.facts.clone();
     Some((simulation.log, facts))
 }

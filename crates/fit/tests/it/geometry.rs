@@ -19,7 +19,7 @@ fn learnt(truth: &Setup, names: &[&str], change: impl Fn(&mut Push)) -> (Vec<Pus
         parameters: Parameter::parse_list(&names).unwrap(),
         seed: 1,
     };
-    let fit = fit(&pushes, &options).unwrap();
+    let fit = fit(&pushes, &options, &|_, _| ()).unwrap();
     (pushes, fit)
 }
 
@@ -123,7 +123,7 @@ fn what_a_scene_lacks_is_refused() {
             parameters,
             seed: 0,
         };
-        fit(&pushes, &options).unwrap_err().to_string()
+        fit(&pushes, &options, &|_, _| ()).unwrap_err().to_string()
     };
     let feet = |setup: &mut Setup| {
         setup.scene.feet = Feet::Known {

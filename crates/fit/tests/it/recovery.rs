@@ -35,7 +35,7 @@ fn deviation(fit: &Fit, name: &str, truth: f64) -> f64 {
 #[test]
 fn friction_of_the_model_is_found_within_its_spread() {
     let pushes = pushes(TRUTH, Physics::Model, 4, 1);
-    let fit = fit(&pushes, &options(&["mu_p", "tripod_radius"])).unwrap();
+    let fit = fit(&pushes, &options(&["mu_p", "tripod_radius"]), &|_, _| ()).unwrap();
     for (name, truth) in [("mu_p", TRUTH.mu_p), ("tripod_radius", TRUTH.d_tri)] {
         assert!(deviation(&fit, name, truth).abs() < 3.0, "{name} {fit:?}");
     }
@@ -52,7 +52,7 @@ fn friction_of_the_model_is_found_within_its_spread() {
 #[test]
 fn friction_of_another_physics_is_found_nearly() {
     let pushes = pushes(TRUTH, Physics::Testbed, 8, 3);
-    let fit = fit(&pushes, &options(&["mu_p", "tripod_radius"])).unwrap();
+    let fit = fit(&pushes, &options(&["mu_p", "tripod_radius"]), &|_, _| ()).unwrap();
     for (name, truth) in [
         ("mu_p", TRUTH.mu_p),
         ("tripod_radius", rig_tripod_radius(TRUTH, 3)),
@@ -76,7 +76,7 @@ fn friction_of_another_physics_is_found_nearly() {
 #[test]
 fn what_pushes_do_not_show_keeps_its_prior() {
     let pushes = pushes(TRUTH, Physics::Model, 2, 20);
-    let fit = fit(&pushes, &options(&["mu_f", "mu_p", "mu_s"])).unwrap();
+    let fit = fit(&pushes, &options(&["mu_f", "mu_p", "mu_s"]), &|_, _| ()).unwrap();
     let [mu_s, mu_p, mu_f] = &fit.parameters[..] else {
         panic!("three parameters");
     };
@@ -93,7 +93,8 @@ fn halves() -> (Vec<Push>, FitOptions, CrossValidation) {
     static VALIDATION: OnceLock<CrossValidation> = OnceLock::new();
     let pushes = pushes(TRUTH, Physics::Model, 4, 40);
     let options = options(&["mu_p", "tripod_radius"]);
-    let validation = VALIDATION.get_or_init(|| cross_validate(&pushes, 2, &options).unwrap());
+    let validation =
+        VALIDATION.get_or_init(|| cross_validate(&pushes, 2, &options, &|_, _| ()).unwrap());
     let validation = validation.clone();
     (pushes, options, validation)
 }
@@ -126,7 +127,7 @@ fn other_pushes_are_predicted_as_a_fold_is() {
         .partition(|(k, _)| k % 2 == 1);
     let of = |part: Vec<(usize, _)>| part.into_iter().map(|(_, push)| push).collect::<Vec<_>>();
     let (train, test) = (of(train), of(test));
-    let taught = fit(&train, &options).unwrap();
+    let taught = fit(&train, &options, &|_, _| ()).unwrap();
     let predicted = predict(&test, &taught, None, &options).unwrap();
     let first_fold = folds.pushes.iter().filter(|push| push.fold == 0);
     for (push, of_fold) in predicted.pushes.iter().zip(first_fold) {
@@ -160,7 +161,7 @@ fn same_seed_same_bits_on_any_number_of_threads() {
         let fit = pool
             .build()
             .unwrap()
-            .install(|| fit(&pushes, &options(&["mu_p"])));
+            .install(|| fit(&pushes, &options(&["mu_p"]), &|_, _| ()));
         format!("{:?}", fit.unwrap())
     };
     assert_eq!(on(1), on(3));

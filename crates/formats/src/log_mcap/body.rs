@@ -6,6 +6,7 @@ use stickslip::PoseCovariance;
 use stickslip_dynamics::Pose;
 
 use crate::log_mcap::error::{McapError, McapProblem};
+use crate::log_mcap::losses::Losses;
 use crate::log_mcap::place::Frames;
 use crate::log_mcap::planar::{Tilt, ZAxis, planar, wrapped};
 use crate::log_mcap::rows::MERGED;
@@ -21,8 +22,8 @@ pub(crate) struct BodyPoses {
     pub poses: Series<Pose>,
     /// Tilt of the frame that was seen.
     pub tilt: Tilt,
-    /// Stamps whose pose is not known.
-    pub unlinked: usize,
+    /// Messages without a pose.
+    pub losses: Losses,
     /// Covariances of the poses, by stamp (ns), where the messages have one.
     pub covariances: BTreeMap<i64, PoseCovariance>,
     /// Number of messages whose numbers are no covariance.
@@ -50,11 +51,12 @@ impl BodyPoses {
             tilt,
             covariances,
             impossible,
+            losses,
         } = source.poses(frame)?;
         Ok(Self {
             poses,
             tilt,
-            unlinked: 0,
+            losses,
             covariances,
             impossible,
         })
@@ -85,7 +87,7 @@ impl BodyPoses {
         Ok(Self {
             poses,
             tilt,
-            unlinked: chain.unlinked,
+            losses: chain.losses,
             covariances: BTreeMap::new(),
             impossible: 0,
         })

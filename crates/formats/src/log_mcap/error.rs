@@ -2,7 +2,9 @@
 
 use std::fmt;
 
+use crate::log_mcap::part::LogTime;
 use crate::log_mcap::topics::Topic;
+use crate::log_warning::listed;
 use crate::number;
 
 /// A message of a recording, as a person finds it.
@@ -85,10 +87,25 @@ pub enum McapProblem {
         /// Name of the compression.
         found: String,
     },
+    /// A recording that unpacks to far more than its size.
+    #[error(
+        "it unpacks to more than 512 MiB and 100 times its size, as no recording does. Give the recording itself, or cut the wanted part out of it with `mcap filter`"
+    )]
+    Unpacks,
+    /// Messages that take far more memory than the recording is large.
+    #[error(
+        "the first {count} messages of the needed topics take {megabytes} MB, far more than the recording itself. Map other topics, or cut the wanted part out of it with `mcap filter`"
+    )]
+    Memory {
+        /// Their number.
+        count: usize,
+        /// Their memory (MB).
+        megabytes: usize,
+    },
     /// A topic that must be there is not.
     #[error(
         "the topic `{name}` ({topic}) is not there{hint}. Say which topic it is with {topic}=TOPIC; the recording has {}",
-        if .found.is_empty() { "none".to_owned() } else { .found.join(", ") }
+        if .found.is_empty() { "none".to_owned() } else { listed(.found) }
     )]
     MissingTopic {
         /// Quantity that it carries.
@@ -103,7 +120,7 @@ pub enum McapProblem {
     /// A camera's topic that must be there is not.
     #[error(
         "the topic `{name}` ({key}) is not there. Say which topic it is with {key}=TOPIC; {}",
-        if .found.is_empty() { "the recording has none of its type".to_owned() } else { format!("of its type the recording has {}", .found.join(", ")) }
+        if .found.is_empty() { "the recording has none of its type".to_owned() } else { format!("of its type the recording has {}", listed(.found)) }
     )]
     NoCameraTopic {
         /// Its key.
@@ -152,7 +169,7 @@ pub enum McapProblem {
     /// Frames that no transforms join.
     #[error(
         "no transforms lead from `{child}` to `{parent}`. Name two frames that are joined; the recording has {}",
-        if .found.is_empty() { "none".to_owned() } else { .found.join(", ") }
+        if .found.is_empty() { "none".to_owned() } else { listed(.found) }
     )]
     NoChain {
         /// The frame whose poses are wanted.
@@ -192,7 +209,7 @@ pub enum McapProblem {
     /// A tag whose place on the body is not given.
     #[error(
         "`{frame}` is not among the tags of the {body} in the scene, which has {}. Say there where it sits: [{body}] tags = {{ \"{frame}\" = [x, y, theta] }}",
-        if .found.is_empty() { "none".to_owned() } else { .found.join(", ") }
+        if .found.is_empty() { "none".to_owned() } else { listed(.found) }
     )]
     UnknownTag {
         /// The frame.
@@ -246,6 +263,24 @@ pub enum McapProblem {
     Nanoseconds {
         /// The nanoseconds.
         found: u32,
+    },
+    /// A clock that was set back.
+    #[error(
+        "{clock} jumps back from {from} to {to} s: the recording has several runs, or a clock was set. {}",
+        match .log_times {
+            Some([to, from]) => format!("Read one run: the log times up to {to} s, or those from {from} s on"),
+            None => "Record each run in a bag of its own".to_owned(),
+        }
+    )]
+    JumpsBack {
+        /// The clock.
+        clock: &'static str,
+        /// Latest time before the jump (s).
+        from: String,
+        /// Time after it (s).
+        to: String,
+        /// Log times before and after the jump, if they tell the runs apart.
+        log_times: Option<[LogTime; 2]>,
     },
     /// Two messages of a topic at one time.
     #[error(

@@ -266,6 +266,7 @@ impl<'t, E: From<McapError>> Images<'t, E> {
             topic,
             log_time,
             data,
+            ..
         } = message;
         self.number += 1;
         let place = Some((self.number, log_time));

@@ -5,8 +5,10 @@ use std::io::Read;
 use serde::Serialize;
 use stickslip_dynamics::Pose;
 
+use crate::left_out::LeftOut;
 use crate::log_mcap::error::McapError;
 use crate::log_mcap::image_message::{IMAGE_TYPES, INFO_TYPE};
+use crate::log_mcap::losses::Losses;
 use crate::log_mcap::message::{Bool, Message, SECOND, WrenchStamped};
 use crate::log_mcap::place::{Frames, Place};
 use crate::log_mcap::planar::{ZAxis, planar};
@@ -35,6 +37,8 @@ pub struct BagInfo {
     /// Topics that would do to find the poses in images, as `stickslip track --topic` takes them;
     /// empty without images.
     pub image_suggestion: Vec<String>,
+    /// Poses that are no measurements, or repeated, by place.
+    pub left_out: Vec<LeftOut>,
 }
 
 /// A topic.
@@ -75,13 +79,12 @@ pub struct PosesInfo {
     pub problem: Option<String>,
 }
 
-/// All that may belong to a log.
-struct OfLogs;
+/// All poses.
+struct Poses;
 
-impl Wanted for OfLogs {
+impl Wanted for Poses {
     fn wants(&self, _: &str, schema: &str) -> bool {
-        PoseKind::of(schema).is_some()
-            || [TfMessage::TYPE, WrenchStamped::TYPE, Bool::TYPE].contains(&schema)
+        PoseKind::of(schema).is_some() || schema == TfMessage::TYPE
     }
 }
 
@@ -96,7 +99,7 @@ pub fn read_bag_info<R: Read>(
     let mut names = Vec::new();
     for (name, file) in files {
         names.push(name);
-        let added = recording.add(file, &OfLogs);
+        let added = recording.add(file, &Poses);
         added.map_err(|problem| whole(&names, problem))?;
     }
     let topics: Vec<TopicInfo> = recording.names.iter().map(topic).collect();
@@ -113,7 +116,11 @@ pub fn read_bag_info<R: Read>(
             .map_or("", |kind| kind.schema.as_str());
         if PoseKind::of(schema).is_some() {
             let read = source.poses(&mut CommonFrame::default());
-            let motion = read.map(|found| (found.poses, found.tilt.largest));
+            let motion = read.map(|found| SeenPoses {
+                poses: found.poses,
+                tilt: found.tilt.largest,
+                losses: found.losses,
+            });
             moving.push((
                 Place::topic(name.clone()),
                 motion.map_err(|error| error.problem.to_string()),
@@ -132,8 +139,19 @@ pub fn read_bag_info<R: Read>(
     }
     let start = moving
         .iter()
-        .filter_map(|(_, motion)| Some(motion.as_ref().ok()?.0.first()?.time))
+        .filter_map(|(_, motion)| Some(motion.as_ref().ok()?.poses.first()?.time))
         .min();
+    let mut warnings = damage_warnings(&recording, &names);
+    let file = names.first().cloned().unwrap_or_default();
+    for (place, motion) in &moving {
+        let of_motion = motion.as_ref().map(|seen| {
+            let kept = seen.poses.len();
+            seen.losses.warnings(&place.to_string(), &file, kept)
+        });
+        warnings.extend(of_motion.unwrap_or_default());
+    }
+    let left_out = warnings.iter().filter_map(LogWarning::left_out);
+    let left_out = left_out.cloned().collect();
     let poses: Vec<PosesInfo> = moving
         .into_iter()
         .map(|(place, motion)| poses_info(&place, motion, start.unwrap_or(0)))
@@ -144,12 +162,21 @@ pub fn read_bag_info<R: Read>(
         topics,
         poses,
         suggestion,
+        left_out,
     };
-    Ok((info, damage_warnings(&recording, &names)))
+    Ok((info, warnings))
 }
 
-/// Poses and the largest tilt (rad), or why there are none.
-type Motion = Result<(Series<Pose>, f64), String>;
+/// Poses of something that moves.
+struct SeenPoses {
+    poses: Series<Pose>,
+    /// Largest tilt (rad).
+    tilt: f64,
+    losses: Losses,
+}
+
+/// Poses, or why there are none.
+type Motion = Result<SeenPoses, String>;
 
 fn topic((name, seen): (&String, &Seen)) -> TopicInfo {
     let keys = match seen.schema.as_str() {
@@ -243,7 +270,11 @@ fn upright(transforms: &Transforms<'_>, frames: &Frames) -> Option<Motion> {
             frames.parent
         )));
     }
-    Some(Ok((poses, largest)))
+    Some(Ok(SeenPoses {
+        poses,
+        tilt: largest,
+        losses: chain.losses,
+    }))
 }
 
 fn poses_info(place: &Place, motion: Motion, start: i64) -> PosesInfo {
@@ -257,7 +288,7 @@ fn poses_info(place: &Place, motion: Motion, start: i64) -> PosesInfo {
         tilt_deg: 0.0,
         problem: None,
     };
-    let (poses, tilt) = match motion {
+    let SeenPoses { poses, tilt, .. } = match motion {
         Ok(motion) => motion,
         Err(problem) => {
             info.problem = Some(problem);

@@ -4,6 +4,7 @@
 //! skipped.
 
 use std::borrow::Cow;
+use std::cell::Cell;
 use std::io::{self, Read, copy, sink};
 
 use mcap::read::ChannelAccumulator;
@@ -11,7 +12,7 @@ use mcap::records::{Record, op};
 
 use crate::log_mcap::error::McapProblem;
 use crate::log_mcap::records::{
-    Stop, damage, damaged, parse, records, split_record, unpacked, unreadable,
+    CHUNK_LIMIT, Stop, check_unpacked, chunk_records, damage, damaged, parse, records, unreadable,
 };
 
 /// First bytes of data packed with zstd; plain CDR and MCAP begin otherwise.
@@ -48,6 +49,8 @@ pub(crate) struct Recorded<'a> {
     pub log_time: u64,
     /// Its bytes.
     pub data: &'a [u8],
+    /// Bytes of its file that were read so far.
+    pub read: u64,
 }
 
 /// Visitor of the channels and messages of a file.
@@ -67,7 +70,11 @@ pub(crate) fn messages(
     visitor: &mut dyn Visitor,
 ) -> Result<Option<Damage>, McapProblem> {
     let mut start = Vec::new();
-    let mut file = file;
+    let packed_bytes = Cell::new(0);
+    let mut file = Metered {
+        file,
+        bytes: &packed_bytes,
+    };
     let read = (&mut file)
         .take(mcap::MAGIC.len() as u64)
         .read_to_end(&mut start);
@@ -75,16 +82,50 @@ pub(crate) fn messages(
     let packed = start.starts_with(&ZSTD);
     let mut whole = start.as_slice().chain(file);
     if !packed {
-        return unpacked_messages(&mut whole, number, visitor);
+        return unpacked_messages(&mut whole, (number, &packed_bytes), visitor);
     }
     let unpacked = zstd::stream::read::Decoder::new(whole);
-    let mut unpacked = unpacked.map_err(|error| unreadable(&error))?;
-    unpacked_messages(&mut unpacked, number, visitor)
+    let mut unpacked = Unpacking {
+        file: unpacked.map_err(|error| unreadable(&error))?,
+        bytes: 0,
+        packed: &packed_bytes,
+    };
+    unpacked_messages(&mut unpacked, (number, &packed_bytes), visitor)
+}
+
+/// A file, and the bytes that were read of it.
+struct Metered<'m, R> {
+    file: R,
+    bytes: &'m Cell<u64>,
+}
+
+impl<R: Read> Read for Metered<'_, R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let read = self.file.read(buffer)?;
+        self.bytes.set(self.bytes.get() + read as u64);
+        Ok(read)
+    }
+}
+
+/// Content of a packed file, which ends with an error where it is far too large.
+struct Unpacking<'m, R> {
+    file: R,
+    bytes: u64,
+    packed: &'m Cell<u64>,
+}
+
+impl<R: Read> Read for Unpacking<'_, R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let read = self.file.read(buffer)?;
+        self.bytes += read as u64;
+        check_unpacked(self.bytes, self.packed.get())?;
+        Ok(read)
+    }
 }
 
 fn unpacked_messages(
     file: &mut dyn Read,
-    number: usize,
+    (number, read): (usize, &Cell<u64>),
     visitor: &mut dyn Visitor,
 ) -> Result<Option<Damage>, McapProblem> {
     let mut file = Counted { file, bytes: 0 };
@@ -99,6 +140,8 @@ fn unpacked_messages(
     let mut progress = Progress {
         visitor,
         links: ChannelAccumulator::default(),
+        read,
+        unpacked: 0,
     };
     let mut at = mcap::MAGIC.len() as u64;
     let mut in_summary = false;
@@ -106,6 +149,7 @@ fn unpacked_messages(
         // the summary repeats what came before it
         in_summary |= opcode == op::DATA_END;
         match opcode {
+            0 => return Err(damage("a record is of no kind")),
             _ if in_summary => {}
             op::CHUNK => progress.take_chunk(body)?,
             _ => progress.take(opcode, body)?,
@@ -117,7 +161,11 @@ fn unpacked_messages(
         Ok(()) | Err(Stop::Enough) => Ok(None),
         Err(Stop::Damage(why)) => {
             // how much is lost; what cannot be read any more is not counted
-            let _ = copy(&mut file, &mut sink());
+            if let Err(Stop::Refused(McapProblem::Unpacks)) =
+                copy(&mut file, &mut sink()).map_err(|error| damaged(&error))
+            {
+                return Err(McapProblem::Unpacks);
+            }
             Ok(Some(Damage {
                 file: number,
                 at,
@@ -172,6 +220,10 @@ impl Read for Counted<'_> {
 struct Progress<'t> {
     visitor: &'t mut dyn Visitor,
     links: ChannelAccumulator<'static>,
+    /// Bytes of the file that were read.
+    read: &'t Cell<u64>,
+    /// Bytes that its chunks unpacked to.
+    unpacked: u64,
 }
 
 impl Progress<'_> {
@@ -180,18 +232,19 @@ impl Progress<'_> {
             Record::Chunk { header, data } => (header, data),
             _ => return Err(damage("a chunk is none")),
         };
-        let content = unpacked(&header, &packed)?;
-        let mut rest = content.as_slice();
-        while !rest.is_empty() {
-            let (opcode, body, after) =
-                split_record(rest).ok_or_else(|| damage("a record is longer than its chunk"))?;
-            self.take(opcode, body)?;
-            rest = after;
-        }
-        Ok(())
+        self.unpacked = self
+            .unpacked
+            .saturating_add(header.uncompressed_size.min(CHUNK_LIMIT));
+        check_unpacked(self.unpacked, self.read.get()).map_err(|error| damaged(&error))?;
+        chunk_records(&header, &packed, &mut |opcode, body| {
+            self.take(opcode, body)
+        })
     }
 
     fn take(&mut self, opcode: u8, body: &[u8]) -> Result<(), Stop> {
+        if opcode == 0 {
+            return Err(damage("a record is of no kind"));
+        }
         if !matches!(opcode, op::SCHEMA | op::CHANNEL | op::MESSAGE) {
             return Ok(());
         }
@@ -211,6 +264,7 @@ impl Progress<'_> {
                     topic: &channel.topic,
                     log_time: header.log_time,
                     data: &data,
+                    read: self.read.get(),
                 })?;
             }
             _ => {}

@@ -53,6 +53,14 @@ pub(crate) fn finite<const N: usize>(numbers: [(&'static str, f64); N]) -> Resul
     }
 }
 
+/// Returns true for the numbers of a body that was not seen: a quaternion of zeros, as motion
+/// capture publishes it, or a number that is not finite.
+pub(crate) fn is_missing(at: &Vector3, q: &Quaternion) -> bool {
+    let rotation = [q.x, q.y, q.z, q.w];
+    let numbers = [at.x, at.y, at.z].into_iter().chain(rotation);
+    rotation == [0.0; 4] || numbers.into_iter().any(|number| !number.is_finite())
+}
+
 /// Refuses a position or an orientation that none can be.
 pub(crate) fn check_pose(at: &Vector3, q: &Quaternion) -> Result<(), McapProblem> {
     finite([

@@ -9,11 +9,13 @@ use stickslip_dynamics::Pose;
 
 use crate::log_mcap::body::{BodyPoses, TaggedBody, joined};
 use crate::log_mcap::error::{McapError, McapProblem};
-use crate::log_mcap::message::SECOND;
+use crate::log_mcap::message::{Bool, Message, SECOND, WrenchStamped};
 use crate::log_mcap::messages::Damage;
+use crate::log_mcap::part::BagPart;
 use crate::log_mcap::place::Place;
 use crate::log_mcap::planar::Tilt;
-use crate::log_mcap::recording::Recording;
+use crate::log_mcap::pose_message::PoseKind;
+use crate::log_mcap::recording::{Recording, Wanted};
 use crate::log_mcap::rows::Rows;
 use crate::log_mcap::series::Series;
 use crate::log_mcap::source::{CommonFrame, Source};
@@ -30,6 +32,8 @@ pub struct BagOptions {
     pub topics: Topics,
     /// Places of tags on object and pusher, where these are read from transforms.
     pub mounts: Mounts,
+    /// Part of the recording that is read.
+    pub part: BagPart,
     /// Force from which a sensor that gives forces is touched (N).
     pub touch_force: f64,
 }
@@ -39,6 +43,7 @@ impl Default for BagOptions {
         Self {
             topics: Topics::default(),
             mounts: Mounts::default(),
+            part: BagPart::default(),
             touch_force: Tactile::default().touch_force,
         }
     }
@@ -70,15 +75,15 @@ pub fn read_log_mcap(
 /// compared with a threshold. Time (s) is `header.stamp`, of Bool the log time; messages may come
 /// in any order.
 ///
-/// A row stands at every stamp of the object. Where there is none for longer than the camera's
-/// period, rows stand at stamps of the pusher, about one per period or per 0.05 s. The pusher is
-/// interpolated between poses at most 0.2 s apart, and so are transforms on the way between two
-/// frames.
+/// Every pose and every tactile reading is in a row at its own time, and equal times share a row. A
+/// reading at most 1 ms after a row that makes a step is in that row, since no step is shorter than
+/// [`SHORTEST_STEP`](stickslip::SHORTEST_STEP). Readings more than 1 s before the first pose or
+/// after the last one are left out. A force cell is the mean over the interval that ends at its
+/// row. The first row's interval is as long as the second's. θ = 2 atan2(q_z, q_w), unwrapped.
 ///
-/// A tactile cell is 1 if any reading in the interval that ends at its row is true, and 0 if there
-/// are only false ones. Without any, it is the last reading if that is at most 0.5 s old. A force
-/// cell is the interval's mean. The first row's interval is as long as the second's. θ = 2
-/// atan2(q_z, q_w), unwrapped.
+/// A pose whose quaternion is 0, or with a number that is not finite, was not measured. It is left
+/// out, and so is a message that is equal to an earlier one. Transforms on the way between two
+/// frames are interpolated over at most 0.2 s. [`LogWarning::left_out`] counts what is left out.
 ///
 /// Where messages of the object have a covariance, that of x, y and the turn about z is the row's.
 /// A covariance of zeros counts as unknown. So do numbers that are no covariance, with a warning.
@@ -94,7 +99,8 @@ pub fn read_log_mcap(
 /// - The topic of object or pusher, or one that is mapped, is missing; sensors are not numbered
 ///   without gaps.
 /// - A topic has messages of another type or encoding.
-/// - A number is not finite, an orientation no rotation; two messages of a topic have one stamp.
+/// - An orientation is no rotation; two different messages of a topic have one stamp.
+/// - A clock jumps back: the recording has several runs.
 /// - Frames differ or are not joined; a tag's place on its body is not given.
 /// - There is no pose at all.
 pub fn read_bag<R: Read>(
@@ -106,7 +112,7 @@ pub fn read_bag<R: Read>(
     let mut names = Vec::new();
     for (name, file) in files {
         names.push(name);
-        let added = recording.add(file, &options.topics);
+        let added = recording.add(file, options);
         added.map_err(|problem| whole(&names, problem))?;
     }
     let reader = Reader {
@@ -115,32 +121,64 @@ pub fn read_bag<R: Read>(
         recording: &recording,
     };
     let mut warnings = damage_warnings(&recording, &names);
+    warnings.extend(unread(&recording, &names, &options.topics));
     let sensors = reader
         .check_topics()
         .map_err(|problem| reader.whole(problem))?;
 
-    // poses make the rows
+    // poses and touches make the rows
     let mut frame = CommonFrame::default();
     let mut transforms = BTreeMap::new();
     let mut poses = |topic| reader.poses(topic, (&mut frame, &mut transforms), &mut warnings);
     let ((object, covariances), (pusher, _)) = (poses(Topic::Object)?, poses(Topic::Pusher)?);
-    let rows = Rows::new(&object, &pusher);
+    let touches = reader.touches(sensors, (&object, &pusher), &mut warnings)?;
+    let rows = Rows::new(&object, &pusher, &touches);
     let time = reader
         .times(&rows)
         .map_err(|problem| reader.whole(problem))?;
 
-    // sensors fill cells in them
-    let readings = reader.readings(sensors, &rows, &mut frame)?;
-    warnings.extend(readings.warnings);
+    // forces fill cells in them
+    let force = reader.forces(&rows, &mut frame, &mut warnings)?;
     let log = Log {
         time,
         object_covariance: own_covariances(&rows, &covariances),
         object: rows.object,
         pusher: rows.pusher,
-        tactile: readings.tactile,
-        force: readings.force,
+        tactile: rows.tactile,
+        force,
     };
     Ok((log, warnings))
+}
+
+impl Wanted for BagOptions {
+    fn wants(&self, name: &str, _: &str) -> bool {
+        self.topics.wants(name)
+    }
+
+    fn takes(&self, name: &str, log_time: u64) -> bool {
+        self.part.has(log_time) || name.ends_with("_static")
+    }
+}
+
+/// The warning about topics that carry poses, forces or touches and are not read. Transforms are
+/// in most bags, and are of other things.
+fn unread(recording: &Recording, files: &[String], topics: &Topics) -> Option<LogWarning> {
+    let left = topics.left_out();
+    let readable = recording.names.iter().filter(|(name, seen)| {
+        let is_measured = PoseKind::of(&seen.schema).is_some()
+            || [WrenchStamped::TYPE, Bool::TYPE].contains(&seen.schema.as_str());
+        is_measured && seen.count > 0 && !topics.wants(name) && !left.contains(name)
+    });
+    let (mut names, mut messages) = (Vec::new(), 0);
+    for (name, seen) in readable {
+        names.push(name.clone());
+        messages += seen.count;
+    }
+    (!names.is_empty()).then(|| LogWarning::Unread {
+        file: files.first().cloned().unwrap_or_default(),
+        topics: names,
+        messages,
+    })
 }
 
 /// Covariances of the object's poses row by row; empty where no message has one.
@@ -320,20 +358,17 @@ impl<'a> Reader<'a> {
             of: read.poses.len(),
             largest,
         });
-        let unlinked = (read.unlinked > 0).then(|| LogWarning::Unlinked {
-            file: file(),
-            place: place.to_string(),
-            count: read.unlinked,
-            of: read.poses.len() + read.unlinked,
-        });
         let impossible = (read.impossible > 0).then(|| LogWarning::NoCovariance {
             file: file(),
             topic: place.to_string(),
             count: read.impossible,
             of: read.poses.len(),
         });
-        let warnings = [tilted, unlinked, impossible];
-        warnings.into_iter().flatten().collect()
+        let warnings = [tilted, impossible].into_iter().flatten();
+        let losses = read
+            .losses
+            .warnings(&place.to_string(), &file(), read.poses.len());
+        warnings.chain(losses).collect()
     }
 
     /// Times of the rows (s).

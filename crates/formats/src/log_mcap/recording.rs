@@ -8,7 +8,6 @@ use std::io::Read;
 use crate::log_mcap::error::McapProblem;
 use crate::log_mcap::messages::{Damage, Kind, Recorded, Visitor, message_data, messages};
 use crate::log_mcap::records::Stop;
-use crate::log_mcap::topics::Topics;
 
 /// Largest size of a message of a needed topic (bytes); poses, forces and touches take 200.
 const MESSAGE_LIMIT: usize = 1 << 16;
@@ -17,13 +16,13 @@ const MESSAGE_LIMIT: usize = 1 << 16;
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct RawMessage {
     /// Number of its file, from 0.
-    pub file: usize,
+    pub file: u32,
     /// Number among those of its topic in the file, from 1.
-    pub number: usize,
+    pub number: u32,
     /// Log time (ns).
     pub log_time: u64,
     /// Its bytes.
-    pub data: Vec<u8>,
+    pub data: Box<[u8]>,
 }
 
 /// Content of a topic.
@@ -39,11 +38,11 @@ pub(crate) struct Content {
 pub(crate) trait Wanted {
     /// Returns true if a topic with messages of a type is read.
     fn wants(&self, name: &str, schema: &str) -> bool;
-}
 
-impl Wanted for Topics {
-    fn wants(&self, name: &str, _: &str) -> bool {
-        self.wants(name)
+    /// Returns true if a message of such a topic at a log time (ns) is read.
+    fn takes(&self, name: &str, log_time: u64) -> bool {
+        let _ = (name, log_time);
+        true
     }
 }
 
@@ -89,6 +88,37 @@ pub(crate) struct Recording {
     pub damage: Vec<Damage>,
     /// Number of files that were read.
     files: usize,
+    /// Bytes of the files before the current one, and of that so far.
+    read: [u64; 2],
+    /// Number of messages that are kept.
+    kept: usize,
+    /// Memory that they take (bytes).
+    memory: usize,
+}
+
+/// Memory that messages may take, whatever the size of their recording (bytes).
+const MEMORY: usize = 24 << 20;
+/// Memory that they may take for each byte of it.
+const MEMORY_RATIO: usize = 16;
+/// Memory of a message besides its bytes.
+const OVERHEAD: usize = size_of::<RawMessage>() + 24;
+
+impl Recording {
+    /// Counts a message that is kept.
+    fn keep(&mut self, bytes: usize, read: u64) -> Result<(), Stop> {
+        self.kept += 1;
+        self.read[1] = read;
+        self.memory += bytes + OVERHEAD;
+        let [before, read] = self.read;
+        let of_files = usize::try_from(before.saturating_add(read)).unwrap_or(usize::MAX);
+        if self.memory > MEMORY.saturating_add(MEMORY_RATIO.saturating_mul(of_files)) {
+            return Err(Stop::Refused(McapProblem::Memory {
+                count: self.kept,
+                megabytes: self.memory / 1_000_000,
+            }));
+        }
+        Ok(())
+    }
 }
 
 /// Keeps the messages of a file.
@@ -98,7 +128,7 @@ pub(crate) struct Keeper<'t> {
     /// Number of the file, from 0.
     file: usize,
     /// Messages so far by topic.
-    numbers: BTreeMap<String, usize>,
+    numbers: BTreeMap<String, u32>,
 }
 
 impl Recording {
@@ -115,6 +145,7 @@ impl Recording {
     /// Visitor that keeps the messages of one more file.
     pub(crate) fn keeper<'t>(&'t mut self, wanted: &'t dyn Wanted) -> Keeper<'t> {
         self.files += 1;
+        self.read = [self.read[0].saturating_add(self.read[1]), 0];
         Keeper {
             wanted,
             file: self.files - 1,
@@ -140,18 +171,27 @@ impl Visitor for Keeper<'_> {
             topic,
             log_time,
             data,
+            read,
         } = message;
         if let Some(seen) = self.recording.names.get_mut(topic) {
             seen.add(log_time);
         }
+        let is_kept = self.recording.topics.contains_key(topic);
+        if !is_kept || !self.wanted.takes(topic, log_time) {
+            return Ok(());
+        }
+        let data: Box<[u8]> = message_data(topic, data, MESSAGE_LIMIT)?.into();
+        self.recording.keep(data.len(), read)?;
         let Some(content) = self.recording.topics.get_mut(topic) else {
             return Ok(());
         };
-        let data = message_data(topic, data, MESSAGE_LIMIT)?.into_owned();
-        let number = self.numbers.entry(topic.to_owned()).or_default();
+        let number = match self.numbers.get_mut(topic) {
+            Some(number) => number,
+            None => self.numbers.entry(topic.to_owned()).or_default(),
+        };
         *number += 1;
         content.messages.push(RawMessage {
-            file: self.file,
+            file: self.file as u32,
             number: *number,
             log_time,
             data,

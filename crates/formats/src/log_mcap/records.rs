@@ -3,7 +3,7 @@
 //! Whole chunks are unpacked here and not by the library's reader: that one trusts the lengths in
 //! them.
 
-use std::io::{self, ErrorKind, Read};
+use std::io::{self, BufRead, BufReader, ErrorKind, Read, Write, copy};
 
 use mcap::read::parse_record;
 use mcap::records::{ChunkHeader, Record, op};
@@ -12,7 +12,7 @@ use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
 use crate::log_mcap::error::McapProblem;
 
 /// Largest size of a record and of an unpacked chunk (bytes); recorders write a few MB, a large
-/// image takes 50. No more than this of a file is in memory at a time.
+/// image takes 50. A record that is not packed is in memory as a whole.
 pub(crate) const CHUNK_LIMIT: u64 = 1 << 28;
 
 /// Most bytes that are taken from a file at once: a record may claim more than there is.
@@ -41,11 +41,25 @@ pub(crate) fn unreadable(error: &io::Error) -> McapProblem {
     }
 }
 
-/// Reason why a file cannot be read on: its decoder reports that by these two kinds.
+/// Reason why a file cannot be read on: its decoder reports that by the first two kinds.
 pub(crate) fn damaged(error: &io::Error) -> Stop {
     match error.kind() {
+        ErrorKind::FileTooLarge => Stop::Refused(McapProblem::Unpacks),
         ErrorKind::UnexpectedEof | ErrorKind::Other => Stop::Damage(error.to_string()),
         _ => Stop::Refused(unreadable(error)),
+    }
+}
+
+/// Bytes that a recording may unpack to, whatever its own size.
+const UNPACKED: u64 = 1 << 29;
+/// Bytes that it may unpack to for each byte of its own.
+const RATIO: u64 = 100;
+
+/// Refuses content of `unpacked` bytes in `packed` bytes of a file: a recording is not so uniform.
+pub(crate) fn check_unpacked(unpacked: u64, packed: u64) -> io::Result<()> {
+    match unpacked > UNPACKED.saturating_add(RATIO.saturating_mul(packed)) {
+        true => Err(ErrorKind::FileTooLarge.into()),
+        false => Ok(()),
     }
 }
 
@@ -75,14 +89,6 @@ pub(crate) fn records(file: &mut dyn Read, take: &mut Take<'_>) -> Result<(), St
         }
     }
     Ok(())
-}
-
-/// The first record of a chunk's content: its opcode, its body and the bytes that follow.
-pub(crate) fn split_record(bytes: &[u8]) -> Option<(u8, &[u8], &[u8])> {
-    let (opcode, rest) = bytes.split_first()?;
-    let (length, rest) = rest.split_first_chunk()?;
-    let (body, rest) = rest.split_at_checked(usize::try_from(u64::from_le_bytes(*length)).ok()?)?;
-    Some((*opcode, body, rest))
 }
 
 /// A record whose texts lie within it; the library reserves memory by their lengths before it
@@ -129,43 +135,109 @@ fn map_fits(bytes: &[u8]) -> Option<()> {
     Some(())
 }
 
-/// The records in a chunk; their checksum is right.
-pub(crate) fn unpacked(header: &ChunkHeader, packed: &[u8]) -> Result<Vec<u8>, Stop> {
+/// Shows the records in a chunk to `take`, one at a time; their checksum is right. Content that is
+/// larger than [`HELD`] is unpacked twice: for the checksum, and record by record.
+pub(crate) fn chunk_records(
+    header: &ChunkHeader,
+    packed: &[u8],
+    take: &mut Take<'_>,
+) -> Result<(), Stop> {
     let size = header.uncompressed_size;
     if size > CHUNK_LIMIT {
         return Err(Stop::Damage(format!(
             "a chunk claims {size} bytes, more than {CHUNK_LIMIT}"
         )));
     }
-    let failed =
-        |error: std::io::Error| Stop::Damage(format!("a chunk cannot be unpacked: {error}"));
+    if size > HELD && !header.compression.is_empty() {
+        let mut sum = Checksum::default();
+        copy(&mut unpacked(header, packed)?.take(size + 1), &mut sum).map_err(failed)?;
+        sum.check(header)?;
+        return split_records(&mut BufReader::new(unpacked(header, packed)?), take);
+    }
     let mut content = Vec::new();
-    let read = match header.compression.as_str() {
-        "" => packed.take(size).read_to_end(&mut content),
-        "zstd" => zstd::stream::read::Decoder::new(packed)
-            .map_err(failed)?
-            .take(size)
-            .read_to_end(&mut content),
-        "lz4" => lz4::Decoder::new(packed)
-            .map_err(failed)?
-            .take(size)
-            .read_to_end(&mut content),
+    let read = unpacked(header, packed)?
+        .take(size + 1)
+        .read_to_end(&mut content);
+    read.map_err(failed)?;
+    let mut sum = Checksum::default();
+    sum.write_all(&content).map_err(failed)?;
+    sum.check(header)?;
+    split_records(&mut content.as_slice(), take)
+}
+
+/// Largest content of a chunk that is unpacked as a whole (bytes).
+const HELD: u64 = 1 << 24;
+
+fn failed(error: io::Error) -> Stop {
+    Stop::Damage(format!("a chunk cannot be unpacked: {error}"))
+}
+
+/// Content of a chunk.
+fn unpacked<'p>(header: &ChunkHeader, packed: &'p [u8]) -> Result<Box<dyn Read + 'p>, Stop> {
+    Ok(match header.compression.as_str() {
+        "" => Box::new(packed),
+        "zstd" => Box::new(zstd::stream::read::Decoder::new(packed).map_err(failed)?),
+        "lz4" => Box::new(lz4::Decoder::new(packed).map_err(failed)?),
         found => {
             return Err(Stop::Refused(McapProblem::Compression {
                 found: found.to_owned(),
             }));
         }
-    };
-    read.map_err(failed)?;
-    if content.len() as u64 != size {
-        return Err(Stop::Damage(format!(
-            "a chunk has {} bytes, and its header says {size}",
-            content.len()
-        )));
+    })
+}
+
+/// Size and checksum of the content of a chunk.
+#[derive(Default)]
+struct Checksum {
+    size: u64,
+    crc: crc32fast::Hasher,
+}
+
+impl Write for Checksum {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.size += bytes.len() as u64;
+        self.crc.update(bytes);
+        Ok(bytes.len())
     }
-    match header.uncompressed_crc {
-        0 => Ok(content),
-        crc if crc == crc32fast::hash(&content) => Ok(content),
-        _ => Err(damage("a chunk's checksum is wrong")),
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
     }
+}
+
+impl Checksum {
+    fn check(self, header: &ChunkHeader) -> Result<(), Stop> {
+        let size = header.uncompressed_size;
+        if self.size != size {
+            let more = if self.size > size { "more than " } else { "" };
+            let found = self.size.min(size);
+            return Err(Stop::Damage(format!(
+                "a chunk has {more}{found} bytes, and its header says {size}"
+            )));
+        }
+        match header.uncompressed_crc {
+            0 => Ok(()),
+            crc if crc == self.crc.finalize() => Ok(()),
+            _ => Err(damage("a chunk's checksum is wrong")),
+        }
+    }
+}
+
+/// Takes the content of a chunk apart.
+fn split_records(content: &mut dyn BufRead, take: &mut Take<'_>) -> Result<(), Stop> {
+    let too_long = |_: io::Error| damage("a record is longer than its chunk");
+    let mut body = Vec::new();
+    while !content.fill_buf().map_err(failed)?.is_empty() {
+        let (mut opcode, mut length) = ([0], [0; 8]);
+        content.read_exact(&mut opcode).map_err(too_long)?;
+        content.read_exact(&mut length).map_err(too_long)?;
+        let length = u64::from_le_bytes(length);
+        body.clear();
+        let read = (&mut *content).take(length).read_to_end(&mut body);
+        if read.map_err(failed)? as u64 != length {
+            return Err(damage("a record is longer than its chunk"));
+        }
+        take(opcode[0], &body)?;
+    }
+    Ok(())
 }

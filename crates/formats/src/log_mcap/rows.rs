@@ -5,73 +5,106 @@ use stickslip_dynamics::Pose;
 use crate::log_mcap::message::SECOND;
 use crate::log_mcap::series::Timed;
 
-/// Poses of object and pusher at most this far apart are one row (ns).
+/// Poses of several tags at most this far apart are one pose, and a reading at most this long after
+/// a step is one of its row (ns).
 pub(crate) const MERGED: i64 = SECOND / 1000;
-/// The pusher is interpolated between poses at most this far apart (ns).
+/// Transforms are interpolated between samples at most this far apart (ns).
 pub(crate) const BRIDGED: i64 = SECOND / 5;
-/// Longest time from one object pose to the next that counts as a camera's period (ns).
-const LONGEST_PERIOD: i64 = SECOND / 5;
-/// Rows of the pusher alone are no farther apart, if it was seen as often (ns).
-const LONGEST_STEP: i64 = SECOND / 20;
-/// A tactile reading holds for this long (ns).
-const HELD: i64 = SECOND / 2;
+/// Time before the first and after the last pose in which readings are kept (ns).
+const AROUND: i64 = SECOND;
 
-/// Times of a log, with the poses measured there.
+/// Times of a log, with the measurements made there.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Rows {
     /// Times (ns), rising.
     pub time: Vec<i64>,
     /// Object poses.
     pub object: Vec<Option<Pose>>,
-    /// Pusher poses, measured or interpolated.
+    /// Pusher poses.
     pub pusher: Vec<Option<Pose>>,
+    /// Readings, one column per touch sensor.
+    pub tactile: Vec<Vec<Option<bool>>>,
+}
+
+/// A measurement that may need a row of its own.
+#[derive(Clone, Copy)]
+enum Measured {
+    Object(Pose),
+    Pusher(Pose),
+    /// Sensor and reading.
+    Touch(usize, bool),
 }
 
 impl Rows {
-    /// A row at every object pose; between them and around them, where the camera sees nothing for
-    /// longer, rows at pusher poses, no closer than the camera's are.
+    /// Every measurement in a row at its own time. Equal times, and times that are equal in
+    /// seconds, are one row.
     ///
-    /// A pusher pose within 1 ms of an object pose is that row's, the nearest of several and the
-    /// earlier of equally near ones; else the pusher is interpolated.
-    pub(crate) fn new(object: &[Timed<Pose>], pusher: &[Timed<Pose>]) -> Self {
-        let mut rows = Self::default();
-        let mut pusher_rows = Thinned::new(object, pusher);
-        for pose in object {
-            rows.push_pusher_rows(pusher_rows.until(Some(pose.time)));
-            let seen = nearest(pusher, pose.time)
-                .filter(|near| near.time.abs_diff(pose.time) <= MERGED.unsigned_abs())
-                .map(|near| near.value);
-            rows.time.push(pose.time);
-            rows.object.push(Some(pose.value));
-            rows.pusher
-                .push(seen.or_else(|| between(pusher, pose.time)));
-            pusher_rows.pass(pose.time);
+    /// A reading within 1 ms after a row that makes a step is in that row: shorter steps are none,
+    /// and readings without a step do not count. Several such readings of a sensor are a touch if
+    /// any of them is. Readings more than 1 s before the first pose or after the last one are left
+    /// out.
+    pub(crate) fn new(
+        object: &[Timed<Pose>],
+        pusher: &[Timed<Pose>],
+        touches: &[Vec<Timed<bool>>],
+    ) -> Self {
+        let mut rows = Self {
+            tactile: vec![Vec::new(); touches.len()],
+            ..Self::default()
+        };
+        // the row of the latest step
+        let mut step = None;
+        for Timed { time, value } in measurements(object, pusher, touches) {
+            let of_step = matches!(value, Measured::Touch(..))
+                .then_some(step)
+                .flatten()
+                .filter(|row: &usize| time.saturating_sub(rows.time[*row]) <= MERGED);
+            let row = of_step.unwrap_or_else(|| rows.row_at(time, value));
+            match value {
+                Measured::Object(pose) => {
+                    rows.object[row] = Some(pose);
+                    // its covariance is found by its time
+                    rows.time[row] = time;
+                }
+                Measured::Pusher(pose) => rows.pusher[row] = Some(pose),
+                Measured::Touch(sensor, is_on) => {
+                    let cell = &mut rows.tactile[sensor][row];
+                    *cell = Some(is_on || *cell == Some(true));
+                }
+            }
+            let since = step.map(|step: usize| seconds(time) - seconds(rows.time[step]));
+            if since.is_none_or(|since| since >= stickslip::SHORTEST_STEP) {
+                step = Some(row);
+            }
         }
-        rows.push_pusher_rows(pusher_rows.until(None));
         rows
     }
 
-    fn push_pusher_rows(&mut self, poses: Vec<Timed<Pose>>) {
-        for pose in poses {
-            self.time.push(pose.time);
+    /// The last row if it is at `time` and its cell is free, else a new one.
+    fn row_at(&mut self, time: i64, value: Measured) -> usize {
+        let last = self.time.len().checked_sub(1);
+        let joins = last.filter(|row| {
+            let is_free = match value {
+                Measured::Object(_) => self.object[*row].is_none(),
+                Measured::Pusher(_) => self.pusher[*row].is_none(),
+                Measured::Touch(..) => true,
+            };
+            is_free && seconds(self.time[*row]) == seconds(time)
+        });
+        joins.unwrap_or_else(|| {
+            self.time.push(time);
             self.object.push(None);
-            self.pusher.push(Some(pose.value));
-        }
+            self.pusher.push(None);
+            self.tactile.iter_mut().for_each(|cells| cells.push(None));
+            self.time.len() - 1
+        })
     }
 
-    /// One cell per row: whether any reading in the interval that ends there is true; without one
-    /// the last reading, if it is at most 0.5 s old.
+    /// One cell per row: true if any reading in the interval that ends there is.
     pub(crate) fn touches(&self, readings: &[Timed<bool>]) -> Vec<Option<bool>> {
         let cell = |(start, end): (i64, i64)| {
-            let (before, within) = interval(readings, start, end);
-            let last = before
-                .last()
-                .filter(|last| end.saturating_sub(last.time) <= HELD);
-            if within.is_empty() {
-                last.map(|last| last.value)
-            } else {
-                Some(within.iter().any(|reading| reading.value))
-            }
+            let within = interval(readings, start, end);
+            (!within.is_empty()).then(|| within.iter().any(|reading| reading.value))
         };
         self.intervals().map(cell).collect()
     }
@@ -79,13 +112,34 @@ impl Rows {
     /// One cell per row: the mean force over the interval that ends there (N).
     pub(crate) fn forces(&self, forces: &[Timed<[f64; 2]>]) -> Vec<Option<[f64; 2]>> {
         let cell = |(start, end): (i64, i64)| {
-            let (_, within) = interval(forces, start, end);
+            let within = interval(forces, start, end);
             let mean = |axis: usize| {
                 within.iter().map(|force| force.value[axis]).sum::<f64>() / within.len() as f64
             };
             (!within.is_empty()).then(|| [mean(0), mean(1)])
         };
         self.intervals().map(cell).collect()
+    }
+
+    /// Times of the first and of the last row (ns).
+    pub(crate) fn ends(&self) -> Option<(i64, i64)> {
+        Some((*self.time.first()?, *self.time.last()?))
+    }
+
+    /// Number of measurements in no row's interval; 0 if all of them are about the rows' time, as
+    /// where topics begin and end one after the other.
+    pub(crate) fn outside<T>(&self, series: &[Timed<T>]) -> usize {
+        let (Some((start, _)), Some(ends)) = (self.intervals().next(), self.ends()) else {
+            return series.len();
+        };
+        let (_, end) = ends;
+        if series.iter().all(|item| is_near(item.time, ends)) {
+            return 0;
+        }
+        let inside = series
+            .iter()
+            .filter(|item| item.time > start && item.time <= end);
+        series.len() - inside.count()
     }
 
     /// The interval that ends at each row: its start, which is not in it, and its end. The first
@@ -103,105 +157,47 @@ impl Rows {
     }
 }
 
-/// Pusher poses that make rows of their own: those in gaps of the camera, about one per period of
-/// the camera.
-struct Thinned<'a> {
-    pusher: &'a [Timed<Pose>],
-    /// Time from one object pose to the next (ns), the median, within reason.
-    period: i64,
-    /// Nearest that a pusher row may be to the row before and to the next object pose (ns).
-    apart: i64,
-    /// Time of the latest row (ns).
-    last: Option<i64>,
+/// A time (ns) in seconds, as rows have it.
+pub(crate) fn seconds(time: i64) -> f64 {
+    time as f64 / SECOND as f64
 }
 
-impl<'a> Thinned<'a> {
-    fn new(object: &[Timed<Pose>], pusher: &'a [Timed<Pose>]) -> Self {
-        let own = median_step(pusher).unwrap_or(0);
-        // a camera that saw one pose or none has no period: all pusher poses are rows
-        let seen = median_step(object).unwrap_or(own);
-        // one that saw a few poses only has a period that says nothing
-        let (period, spacing) = (seen.min(LONGEST_PERIOD), seen.min(LONGEST_STEP));
-        let is_fast = 2 * own <= spacing;
-        Self {
-            pusher,
-            period,
-            apart: if is_fast {
-                spacing - own / 2
-            } else {
-                spacing / 2
-            }
-            .max(MERGED + 1),
-            last: None,
-        }
+/// All measurements by time; of one time the poses come first.
+fn measurements(
+    object: &[Timed<Pose>],
+    pusher: &[Timed<Pose>],
+    touches: &[Vec<Timed<bool>>],
+) -> Vec<Timed<Measured>> {
+    let (from, to) = span(object, pusher);
+    let mut all = Vec::with_capacity(object.len() + pusher.len());
+    all.extend(object.iter().map(|pose| pose.map(Measured::Object)));
+    all.extend(pusher.iter().map(|pose| pose.map(Measured::Pusher)));
+    for (sensor, readings) in touches.iter().enumerate() {
+        let near = readings
+            .iter()
+            .filter(|reading| is_near(reading.time, (from, to)));
+        all.extend(near.map(|reading| reading.map(|is_on| Measured::Touch(sensor, is_on))));
     }
-
-    /// Passes an object pose.
-    fn pass(&mut self, time: i64) {
-        self.last = Some(time);
-        let passed = self.pusher.partition_point(|pose| pose.time <= time);
-        self.pusher = &self.pusher[passed..];
-    }
-
-    /// The pusher rows before the next object pose, or before the end.
-    fn until(&mut self, next: Option<i64>) -> Vec<Timed<Pose>> {
-        let mut rows = Vec::new();
-        // a camera that is a little late leaves no gap
-        let gap = self
-            .last
-            .zip(next)
-            .map(|(last, next)| next.saturating_sub(last));
-        if gap.is_some_and(|gap| 2 * gap <= 3 * self.period) {
-            return rows;
-        }
-        let end = next.map_or(i64::MAX, |next| next.saturating_sub(self.apart));
-        for pose in self.pusher.iter().take_while(|pose| pose.time <= end) {
-            let far = |last: i64| pose.time.saturating_sub(last) >= self.apart;
-            if self.last.is_none_or(far) {
-                self.last = Some(pose.time);
-                rows.push(*pose);
-            }
-        }
-        rows
-    }
+    all.sort_by_key(|measured| measured.time);
+    all
 }
 
-/// The median time from one measurement to the next (ns).
-fn median_step(series: &[Timed<Pose>]) -> Option<i64> {
-    let mut steps: Vec<i64> = series
-        .array_windows()
-        .map(|[a, b]| b.time.saturating_sub(a.time))
-        .collect();
-    steps.sort_unstable();
-    steps.get(steps.len() / 2).copied()
-}
-
-/// The pose nearest to `time`; the earlier of equally near ones.
-fn nearest(poses: &[Timed<Pose>], time: i64) -> Option<Timed<Pose>> {
-    let after = poses.partition_point(|pose| pose.time < time);
-    let near = &poses[after.saturating_sub(1)..poses.len().min(after + 1)];
-    near.iter()
-        .copied()
-        .min_by_key(|pose| pose.time.abs_diff(time))
-}
-
-/// The pose at `time` on the straight way between its neighbours, if they are near enough.
-fn between(poses: &[Timed<Pose>], time: i64) -> Option<Pose> {
-    let after = poses.partition_point(|pose| pose.time < time);
-    let (before, after) = (poses.get(after.checked_sub(1)?)?, poses.get(after)?);
-    let apart = after.time - before.time;
-    (apart <= BRIDGED).then(|| {
-        before
-            .value
-            .interpolate(after.value, (time - before.time) as f64 / apart as f64)
+/// Times of the first and of the last pose (ns); an empty span without any.
+pub(crate) fn span(object: &[Timed<Pose>], pusher: &[Timed<Pose>]) -> (i64, i64) {
+    let ends = |series: &[Timed<Pose>]| Some((series.first()?.time, series.last()?.time));
+    let all = [ends(object), ends(pusher)].into_iter().flatten();
+    all.fold((i64::MAX, i64::MIN), |all, own| {
+        (all.0.min(own.0), all.1.max(own.1))
     })
 }
 
-/// The measurements up to `start`, and those after it up to `end`.
-fn interval<T>(series: &[Timed<T>], start: i64, end: i64) -> (&[Timed<T>], &[Timed<T>]) {
-    let (before, rest) = series.split_at(series.partition_point(|item| item.time <= start));
-    (
-        before,
-        &rest[..rest.partition_point(|item| item.time <= end)],
-    )
+/// Returns true if readings at a time are kept among poses of these times.
+pub(crate) fn is_near(time: i64, (from, to): (i64, i64)) -> bool {
+    time >= from.saturating_sub(AROUND) && time <= to.saturating_add(AROUND)
+}
+
+/// The measurements after `start` up to `end`.
+fn interval<T>(series: &[Timed<T>], start: i64, end: i64) -> &[Timed<T>] {
+    let rest = &series[series.partition_point(|item| item.time <= start)..];
+    &rest[..rest.partition_point(|item| item.time <= end)]
 }

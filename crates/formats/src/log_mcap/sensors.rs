@@ -2,13 +2,15 @@
 
 use std::collections::BTreeSet;
 
+use stickslip_dynamics::Pose;
+
+use crate::left_out::{LeftOut, Reason};
 use crate::log_mcap::camera_topics::CameraTopics;
 use crate::log_mcap::error::{McapError, McapProblem};
 use crate::log_mcap::images::CameraRecording;
-use crate::log_mcap::message::SECOND;
 use crate::log_mcap::read::{BagOptions, Reader, damage_warnings};
-use crate::log_mcap::rows::Rows;
-use crate::log_mcap::series::{Timed, seconds_text};
+use crate::log_mcap::rows::{Rows, is_near, span};
+use crate::log_mcap::series::{Series, Timed, seconds_text};
 use crate::log_mcap::source::CommonFrame;
 use crate::log_mcap::topics::Topic;
 use crate::log_warning::LogWarning;
@@ -56,11 +58,19 @@ impl CameraRecording {
         let sensors = reader.sensors();
         let sensors = sensors.map_err(|problem| reader.whole(problem))?;
         let rows = Rows {
-            object: vec![None; time.len()],
-            pusher: vec![None; time.len()],
             time,
+            ..Rows::default()
         };
-        reader.readings(sensors, &rows, &mut CommonFrame::default())
+        let mut found = Readings::default();
+        for topic in (1..=sensors).map(Topic::Fixel) {
+            let touches = reader.topic_touches(topic, &mut found.warnings)?;
+            let outside = reader.outside(topic, &touches, rows.outside(&touches), rows.ends());
+            found.warnings.extend(outside);
+            found.tactile.push(rows.touches(&touches));
+        }
+        let mut frame = CommonFrame::default();
+        found.force = reader.forces(&rows, &mut frame, &mut found.warnings)?;
+        Ok(found)
     }
 }
 
@@ -87,51 +97,83 @@ impl Reader<'_> {
         }
     }
 
-    /// The readings of `sensors` touch sensors and of the force.
-    pub(crate) fn readings(
+    /// The readings of `sensors` touch sensors, next to the poses of both bodies.
+    pub(crate) fn touches(
         &self,
         sensors: usize,
-        rows: &Rows,
-        frame: &mut CommonFrame,
-    ) -> Result<Readings, McapError> {
-        let mut readings = Readings::default();
+        (object, pusher): (&[Timed<Pose>], &[Timed<Pose>]),
+        warnings: &mut Vec<LogWarning>,
+    ) -> Result<Vec<Series<bool>>, McapError> {
+        let poses = span(object, pusher);
+        let mut all = Vec::with_capacity(sensors);
         for topic in (1..=sensors).map(Topic::Fixel) {
-            let touches = self.source(topic).map_or(Ok(Vec::new()), |source| {
-                source.touches(self.options.touch_force)
-            })?;
-            readings.tactile.push(rows.touches(&touches));
-            let elsewhere = self.elsewhere(topic, &touches, rows);
-            readings.warnings.extend(elsewhere);
+            let touches = self.topic_touches(topic, warnings)?;
+            let far = touches.iter().filter(|touch| !is_near(touch.time, poses));
+            warnings.extend(self.outside(topic, &touches, far.count(), Some(poses)));
+            all.push(touches);
         }
-        if let Some(wrench) = self.source(Topic::Wrench) {
-            let forces = wrench.forces(frame)?;
-            let elsewhere = self.elsewhere(Topic::Wrench, &forces, rows);
-            readings.warnings.extend(elsewhere);
-            readings.force = rows.forces(&forces);
-        }
-        Ok(readings)
+        Ok(all)
     }
 
-    /// The warning about a topic none of whose measurements is at any row's time.
-    fn elsewhere<T>(&self, topic: Topic, series: &[Timed<T>], rows: &Rows) -> Option<LogWarning> {
-        let (first, last, begin, end) = (
-            series.first()?.time,
-            series.last()?.time,
-            *rows.time.first()?,
-            *rows.time.last()?,
-        );
-        let apart = last < begin.saturating_sub(SECOND) || first > end;
-        let text = |from, to| format!("{} to {} s", seconds_text(from), seconds_text(to));
-        let (file, topic) = (
-            self.files.first().cloned().unwrap_or_default(),
-            self.name(topic),
-        );
-        apart.then(|| LogWarning::Elsewhere {
-            file,
-            topic,
-            at: text(first, last),
-            rows: text(begin, end),
+    fn topic_touches(
+        &self,
+        topic: Topic,
+        warnings: &mut Vec<LogWarning>,
+    ) -> Result<Series<bool>, McapError> {
+        let Some(source) = self.source(topic) else {
+            return Ok(Vec::new());
+        };
+        let found = source.touches(self.options.touch_force)?;
+        let kept = found.readings.len();
+        warnings.extend(found.losses.warnings(&self.name(topic), &self.bag(), kept));
+        Ok(found.readings)
+    }
+
+    /// Forces in the rows (N); none without their topic.
+    pub(crate) fn forces(
+        &self,
+        rows: &Rows,
+        frame: &mut CommonFrame,
+        warnings: &mut Vec<LogWarning>,
+    ) -> Result<Vec<Option<[f64; 2]>>, McapError> {
+        let Some(source) = self.source(Topic::Wrench) else {
+            return Ok(Vec::new());
+        };
+        let found = source.forces(frame)?;
+        let (kept, topic) = (found.readings.len(), self.name(Topic::Wrench));
+        warnings.extend(found.losses.warnings(&topic, &self.bag(), kept));
+        let (forces, outside) = (&found.readings, rows.outside(&found.readings));
+        warnings.extend(self.outside(Topic::Wrench, forces, outside, rows.ends()));
+        Ok(rows.forces(forces))
+    }
+
+    /// The warning about `count` measurements of a topic that are before or after the poses.
+    fn outside<T>(
+        &self,
+        topic: Topic,
+        series: &[Timed<T>],
+        count: usize,
+        poses: Option<(i64, i64)>,
+    ) -> Option<LogWarning> {
+        let (first, last, poses) = (series.first()?.time, series.last()?.time, poses?);
+        let text = |(from, to)| format!("{} to {} s", seconds_text(from), seconds_text(to));
+        (count > 0).then(|| LogWarning::LeftOut {
+            file: self.bag(),
+            left_out: LeftOut {
+                place: self.name(topic),
+                count,
+                of: series.len(),
+                reason: Reason::OtherTime {
+                    at: text((first, last)),
+                    poses: text(poses),
+                },
+            },
         })
+    }
+
+    /// Name of the bag in warnings.
+    fn bag(&self) -> String {
+        self.files.first().cloned().unwrap_or_default()
     }
 }
 

@@ -15,6 +15,16 @@ pub(crate) struct Timed<T> {
     pub value: T,
 }
 
+impl<T: Copy> Timed<T> {
+    /// Something made of the measurement, at its time.
+    pub(crate) fn map<U>(&self, make: impl FnOnce(T) -> U) -> Timed<U> {
+        Timed {
+            time: self.time,
+            value: make(self.value),
+        }
+    }
+}
+
 /// Measurements of one thing, times rising.
 pub(crate) type Series<T> = Vec<Timed<T>>;
 

@@ -5,9 +5,11 @@ use std::collections::BTreeMap;
 use stickslip::PoseCovariance;
 use stickslip_dynamics::Pose;
 
+use crate::log_mcap::arrival::{self, Clock};
 use crate::log_mcap::error::{McapError, McapPlace, McapProblem};
+use crate::log_mcap::losses::Losses;
 use crate::log_mcap::message::{Bool, Message, SECOND, Time, WrenchStamped, decode};
-use crate::log_mcap::planar::{Tilt, ZAxis, finite, planar};
+use crate::log_mcap::planar::{Tilt, ZAxis, is_missing, planar};
 use crate::log_mcap::pose_message::{PoseKind, TfMessage, ToldNoise};
 use crate::log_mcap::recording::{Content, RawMessage};
 use crate::log_mcap::series::{Series, Timed, seconds_text};
@@ -41,6 +43,16 @@ pub(crate) struct TopicPoses {
     pub covariances: BTreeMap<i64, PoseCovariance>,
     /// Number of messages whose numbers are no covariance.
     pub impossible: usize,
+    /// Messages that are not in it.
+    pub losses: Losses,
+}
+
+/// The readings of a sensor's topic.
+pub(crate) struct TopicReadings<T> {
+    /// By time.
+    pub readings: Series<T>,
+    /// Messages that are not in it.
+    pub losses: Losses,
 }
 
 /// A measurement with the message that it is from.
@@ -62,6 +74,9 @@ impl<'a> Source<'a> {
         };
         let read = self.read(|data| {
             let message = kind.decode(data)?;
+            if is_missing(&message.position, &message.orientation) {
+                return Ok(None);
+            }
             frame.check(&message.header.frame_id, self.name, false)?;
             let (pose, leans) = planar(&message.position, &message.orientation, ZAxis::Up)?;
             found.tilt.add(leans);
@@ -73,64 +88,79 @@ impl<'a> Source<'a> {
                 ToldNoise::Impossible => found.impossible += 1,
                 ToldNoise::Unknown => {}
             }
-            Ok(Timed { time, value: pose })
+            Ok(Some(Timed { time, value: pose }))
         })?;
-        found.poses = self.by_stamp(read)?;
+        (found.poses, found.losses) = self.by_stamp(read)?;
         Ok(found)
     }
 
     /// Forces by stamp (N).
-    pub(crate) fn forces(&self, frame: &mut CommonFrame) -> Result<Series<[f64; 2]>, McapError> {
+    pub(crate) fn forces(
+        &self,
+        frame: &mut CommonFrame,
+    ) -> Result<TopicReadings<[f64; 2]>, McapError> {
         self.kind(&[WrenchStamped::TYPE])?;
         let read = self.read(|data| {
             let message: WrenchStamped = decode(data)?;
+            let Some([x, y, _]) = finite_force(&message) else {
+                return Ok(None);
+            };
             frame.check(&message.header.frame_id, self.name, true)?;
-            let force = finite_force(&message)?;
-            Ok(Timed {
-                time: stamp(&message.header.stamp)?,
-                value: [force[0], force[1]],
-            })
+            let time = stamp(&message.header.stamp)?;
+            Ok(Some(Timed {
+                time,
+                value: [x, y],
+            }))
         })?;
-        self.by_stamp(read)
+        let (readings, losses) = self.by_stamp(read)?;
+        Ok(TopicReadings { readings, losses })
     }
 
     /// Touches of a sensor: readings by log time, since such messages have no stamp, or forces by
     /// stamp, of which those of `touch_force` (N) and more are touches.
-    pub(crate) fn touches(&self, touch_force: f64) -> Result<Series<bool>, McapError> {
+    pub(crate) fn touches(&self, touch_force: f64) -> Result<TopicReadings<bool>, McapError> {
         if self.kind(&[Bool::TYPE, WrenchStamped::TYPE])? == WrenchStamped::TYPE {
             let read = self.read(|data| {
                 let message: WrenchStamped = decode(data)?;
-                let [x, y, z] = finite_force(&message)?;
-                Ok(Timed {
+                let Some([x, y, z]) = finite_force(&message) else {
+                    return Ok(None);
+                };
+                Ok(Some(Timed {
                     time: stamp(&message.header.stamp)?,
                     value: libm::hypot(libm::hypot(x, y), z) >= touch_force,
-                })
+                }))
             })?;
-            return self.by_stamp(read);
+            let (readings, losses) = self.by_stamp(read)?;
+            return Ok(TopicReadings { readings, losses });
         }
-        let read = self.read(|data| {
-            let Bool { data: value } = decode(data)?;
-            Ok(Timed { time: 0, value })
-        })?;
-        let at = |message: &FromMessage<'_, bool>| Timed {
-            time: i64::try_from(message.raw.log_time).unwrap_or(i64::MAX),
-            value: message.timed.value,
-        };
-        let mut touches: Series<bool> = read.iter().map(at).collect();
-        touches.sort_by_key(|touch| touch.time);
-        Ok(touches)
+        let mut readings: Series<bool> = Vec::with_capacity(self.content.messages.len());
+        for raw in &self.content.messages {
+            let message = decode(&raw.data).map_err(|problem| self.error(Some(raw), problem))?;
+            let Bool { data: value } = message;
+            let time = log_time(raw);
+            readings.push(Timed { time, value });
+        }
+        let timed = self.content.messages.iter().map(|raw| (raw, log_time(raw)));
+        let late = arrival::check(timed, Clock::LogTime);
+        late.map_err(|(raw, problem)| self.error(Some(raw), problem))?;
+        readings.sort_by_key(|touch| touch.time);
+        Ok(TopicReadings {
+            readings,
+            losses: Losses::default(),
+        })
     }
 
-    /// All messages, each taken apart by `take`.
-    pub(crate) fn read<T>(
+    /// All messages with a measurement, each taken apart by `take`.
+    fn read<T>(
         &self,
-        mut take: impl FnMut(&[u8]) -> Result<Timed<T>, McapProblem>,
+        mut take: impl FnMut(&[u8]) -> Result<Option<Timed<T>>, McapProblem>,
     ) -> Result<Vec<FromMessage<'a, T>>, McapError> {
-        let read = |raw: &'a RawMessage| {
+        let mut read = Vec::with_capacity(self.content.messages.len());
+        for raw in &self.content.messages {
             let timed = take(&raw.data).map_err(|problem| self.error(Some(raw), problem))?;
-            Ok(FromMessage { raw, timed })
-        };
-        self.content.messages.iter().map(read).collect()
+            read.extend(timed.map(|timed| FromMessage { raw, timed }));
+        }
+        Ok(read)
     }
 
     /// The type of all messages, which must be one of `expected`; that of no message is the first.
@@ -164,32 +194,47 @@ impl<'a> Source<'a> {
         Ok(first.map_or(expected[0], String::as_str))
     }
 
-    /// Sorted; two messages with one stamp are an error.
-    pub(crate) fn by_stamp<T>(
+    /// Sorted; two different messages with one stamp are an error, and so is a clock that jumps
+    /// back.
+    fn by_stamp<T>(
         &self,
         mut messages: Vec<FromMessage<'a, T>>,
-    ) -> Result<Series<T>, McapError> {
+    ) -> Result<(Series<T>, Losses), McapError> {
+        let stamps = messages
+            .iter()
+            .map(|message| (message.raw, message.timed.time));
+        let late = arrival::check(stamps, Clock::Stamp);
+        let late = late.map_err(|(raw, problem)| self.error(Some(raw), problem))?;
+        let count = messages.len();
         messages.sort_by_key(|message| message.timed.time);
+        messages.dedup_by(|a, b| a.timed.time == b.timed.time && a.raw.data == b.raw.data);
+        let losses = Losses {
+            unmeasured: self.content.messages.len() - count,
+            repeated: count - messages.len(),
+            late,
+            ..Losses::default()
+        };
         if let Some([first, second]) = messages
             .array_windows()
             .find(|[a, b]| a.timed.time == b.timed.time)
         {
             let problem = McapProblem::SameStamp {
                 stamp: seconds_text(second.timed.time),
-                first: first.raw.number,
+                first: first.raw.number as usize,
             };
             return Err(self.error(Some(second.raw), problem));
         }
-        Ok(messages.into_iter().map(|message| message.timed).collect())
+        let series = messages.into_iter().map(|message| message.timed);
+        Ok((series.collect(), losses))
     }
 
     /// An error in a message, or in the whole topic.
     pub(crate) fn error(&self, message: Option<&RawMessage>, problem: McapProblem) -> McapError {
         let place = McapPlace {
             topic: self.name.to_owned(),
-            message: message.map(|raw| (raw.number, raw.log_time)),
+            message: message.map(|raw| (raw.number as usize, raw.log_time)),
         };
-        let file = message.map_or(0, |raw| raw.file);
+        let file = message.map_or(0, |raw| raw.file as usize);
         McapError {
             file: self.files.get(file).cloned().unwrap_or_default(),
             place: Some(place),
@@ -229,12 +274,17 @@ pub(crate) fn stamp(stamp: &Time) -> Result<i64, McapProblem> {
     }
 }
 
-fn finite_force(message: &WrenchStamped) -> Result<[f64; 3], McapProblem> {
+/// Time at which a message was recorded (ns).
+fn log_time(raw: &RawMessage) -> i64 {
+    i64::try_from(raw.log_time).unwrap_or(i64::MAX)
+}
+
+/// The force of a message (N); `None` where a number is not finite, so that none was measured.
+fn finite_force(message: &WrenchStamped) -> Option<[f64; 3]> {
     let force = &message.force;
-    finite([
-        ("force.x", force.x),
-        ("force.y", force.y),
-        ("force.z", force.z),
-    ])?;
-    Ok([force.x, force.y, force.z])
+    let force = [force.x, force.y, force.z];
+    force
+        .iter()
+        .all(|number| number.is_finite())
+        .then_some(force)
 }

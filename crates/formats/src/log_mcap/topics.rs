@@ -252,6 +252,12 @@ impl Topics {
         self.0.get(&topic).cloned().unwrap_or_else(own)
     }
 
+    /// Names of topics that are left out on purpose.
+    pub(crate) fn left_out(&self) -> Vec<String> {
+        let empty = self.0.iter().filter(|(_, places)| places.is_empty());
+        empty.map(|(topic, _)| topic.default_name()).collect()
+    }
+
     /// Returns true if nothing is mapped.
     #[must_use]
     pub fn is_default(&self) -> bool {

@@ -5,10 +5,12 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::{Isometry3, Quaternion as Rotation, Translation3, UnitQuaternion};
 
+use crate::log_mcap::arrival::{self, Clock, Late};
 use crate::log_mcap::error::{McapError, McapProblem};
+use crate::log_mcap::losses::Losses;
 use crate::log_mcap::message::{Message, Quaternion, Vector3, decode};
 use crate::log_mcap::place::Frames;
-use crate::log_mcap::planar::check_pose;
+use crate::log_mcap::planar::{check_pose, is_missing};
 use crate::log_mcap::pose_message::{TfMessage, TransformStamped};
 use crate::log_mcap::recording::RawMessage;
 use crate::log_mcap::rows::BRIDGED;
@@ -32,7 +34,14 @@ struct Link<'a> {
 /// A frame in its parent, over time.
 enum Motion {
     Static(Isometry3<f64>),
-    Moving(Series<Isometry3<f64>>),
+    Moving(Moving),
+}
+
+/// A frame that moves.
+struct Moving {
+    series: Series<Isometry3<f64>>,
+    /// Transforms that are not in it.
+    losses: Losses,
 }
 
 /// One link of a chain; `inverted` where the chain goes from parent to child.
@@ -45,8 +54,8 @@ struct Step {
 pub(crate) struct Chain {
     /// Position and orientation at the stamps of the first link that moves.
     pub poses: Series<(Vector3, Quaternion)>,
-    /// Stamps at which another link of the chain is not known.
-    pub unlinked: usize,
+    /// Transforms of that link without a pose.
+    pub losses: Losses,
 }
 
 impl<'a> Transforms<'a> {
@@ -106,7 +115,7 @@ impl<'a> Transforms<'a> {
     pub(crate) fn chain(&self, frames: &Frames) -> Result<Chain, McapError> {
         let steps = self.steps(frames)?;
         let moving = steps.iter().find_map(|step| match &step.motion {
-            Motion::Moving(series) => Some(series),
+            Motion::Moving(moving) => Some(moving),
             Motion::Static(_) => None,
         });
         let Some(moving) = moving else {
@@ -114,10 +123,10 @@ impl<'a> Transforms<'a> {
             return Err(self.error(McapProblem::NothingMoves { frames }));
         };
         let mut chain = Chain {
-            poses: Vec::with_capacity(moving.len()),
-            unlinked: 0,
+            poses: Vec::with_capacity(moving.series.len()),
+            losses: moving.losses,
         };
-        for Timed { time, .. } in moving {
+        for Timed { time, .. } in &moving.series {
             // from the child's frame outwards, so that each link is applied after those below it
             let pose = steps.iter().try_fold(Isometry3::identity(), |pose, step| {
                 let link = step.motion.at(*time)?;
@@ -128,7 +137,7 @@ impl<'a> Transforms<'a> {
                     time: *time,
                     value: parts(&pose),
                 }),
-                None => chain.unlinked += 1,
+                None => chain.losses.unlinked += 1,
             }
         }
         Ok(chain)
@@ -195,6 +204,9 @@ impl Link<'_> {
         let mut samples = Vec::with_capacity(self.samples.len());
         for (raw, transform) in &self.samples {
             let wrong = |problem| self.source.error(Some(raw), problem);
+            if !self.is_static && is_missing(&transform.translation, &transform.rotation) {
+                continue;
+            }
             check_pose(&transform.translation, &transform.rotation).map_err(wrong)?;
             let time = match self.is_static {
                 true => 0,
@@ -202,18 +214,31 @@ impl Link<'_> {
             };
             samples.push((*raw, time, isometry(transform)));
         }
+        let mut late = Late::default();
+        if !self.is_static {
+            let stamps = samples.iter().map(|(raw, time, _)| (*raw, *time));
+            let checked = arrival::check(stamps, Clock::Stamp);
+            late = checked.map_err(|(raw, problem)| self.source.error(Some(raw), problem))?;
+        }
+        let count = samples.len();
         samples.sort_by_key(|(_, time, _)| *time);
         samples.dedup_by(|(_, a_time, a), (_, b_time, b)| a_time == b_time && a == b);
+        let losses = Losses {
+            unmeasured: self.samples.len() - count,
+            repeated: count - samples.len(),
+            late,
+            ..Losses::default()
+        };
         let twice = samples.array_windows().find(|[a, b]| a.1 == b.1);
         if let Some([(first, ..), (second, time, _)]) = twice {
             let problem = match self.is_static {
                 true => McapProblem::StaticMoved {
                     frame: self.samples[0].1.child_frame_id.clone(),
-                    first: first.number,
+                    first: first.number as usize,
                 },
                 false => McapProblem::SameStamp {
                     stamp: seconds_text(*time),
-                    first: first.number,
+                    first: first.number as usize,
                 },
             };
             return Err(self.source.error(Some(second), problem));
@@ -223,7 +248,10 @@ impl Link<'_> {
             .map(|(_, time, value)| Timed { time, value });
         Ok(match series.next() {
             Some(only) if self.is_static => Motion::Static(only.value),
-            first => Motion::Moving(first.into_iter().chain(series).collect()),
+            first => Motion::Moving(Moving {
+                series: first.into_iter().chain(series).collect(),
+                losses,
+            }),
         })
     }
 }
@@ -233,7 +261,7 @@ impl Motion {
     fn at(&self, time: i64) -> Option<Isometry3<f64>> {
         let series = match self {
             Self::Static(pose) => return Some(*pose),
-            Self::Moving(series) => series,
+            Self::Moving(moving) => &moving.series,
         };
         let after = series.partition_point(|pose| pose.time < time);
         let next = series.get(after)?;

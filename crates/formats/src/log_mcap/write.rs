@@ -75,8 +75,7 @@ impl From<mcap::McapError> for McapWriteError {
 /// the frame `world` and at their row's time, rounded to nanoseconds. An empty cell is no message.
 /// Equal logs give equal bytes.
 ///
-/// Reading by [`crate::read_log_mcap`] loses rows without any pose, and which cells were empty
-/// where its rules fill them.
+/// Reading by [`crate::read_log_mcap`] loses rows without any cell.
 ///
 /// # Errors
 /// A time that a stamp cannot hold, two rows within a nanosecond, or what `writer` says. After the

@@ -21,10 +21,20 @@ const DIGITS: i32 = 6;
 /// assert_eq!((setup.scene.nominal.mu_s, setup.uncertainty.friction.mu_s), (0.312, 0.1));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct SceneEdit {
     document: DocumentMut,
     heading: String,
+}
+
+/// A way of keys at which a scene has no value.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "`{way}` names no value of a scene; write a key, or a table and its key as pusher.friction"
+)]
+pub struct SceneWayError {
+    /// The way.
+    pub way: String,
 }
 
 impl SceneEdit {
@@ -61,6 +71,60 @@ impl SceneEdit {
             *value.decor_mut() = old.decor().clone();
         }
         table.insert(key, Item::Value(value));
+    }
+
+    /// Writes a value of any type, or removes it, at the end of a way of one or two keys, as
+    /// `gravity` or `pusher.friction`. A missing table is made. A table or a list of tables gets
+    /// headings. Whether the result is a scene is for [`read_scene`] to say.
+    ///
+    /// ```
+    /// # use stickslip_formats::SceneEdit;
+    /// let mut edit = SceneEdit::default();
+    /// edit.put("gravity", Some(9.81.into()))?;
+    /// edit.put("pusher.friction", Some(0.25.into()))?;
+    /// assert_eq!(edit.text(), "gravity = 9.81\n\n[pusher]\nfriction = 0.25\n");
+    /// # Ok::<(), stickslip_formats::SceneWayError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// The way has more keys, an empty one, or leads through a value that is no table.
+    pub fn put(&mut self, way: &str, value: Option<Value>) -> Result<(), SceneWayError> {
+        let error = || SceneWayError {
+            way: way.to_owned(),
+        };
+        let keys: Vec<&str> = way.split('.').collect();
+        let (table, key) = match keys.as_slice() {
+            ["", ..] | [.., ""] => return Err(error()),
+            [key] => (self.document.as_table_mut() as &mut dyn TableLike, *key),
+            [table, key] => {
+                let root = self.document.as_table_mut();
+                if value.is_none() && !root.contains_key(table) {
+                    return Ok(());
+                }
+                let item = root.entry(table).or_insert(Item::Table(Table::new()));
+                (item.as_table_like_mut().ok_or_else(error)?, *key)
+            }
+            _ => return Err(error()),
+        };
+        let Some(mut value) = value else {
+            table.remove(key);
+            return Ok(());
+        };
+        if let Some(old) = table.get(key).and_then(Item::as_value) {
+            *value.decor_mut() = old.decor().clone();
+        }
+        let item = Item::Value(value);
+        let item = match keys.len() {
+            1 => match item.into_table() {
+                Ok(table) => Item::Table(table),
+                Err(item) => item
+                    .into_array_of_tables()
+                    .map_or_else(|item| item, Item::ArrayOfTables),
+            },
+            _ => item,
+        };
+        table.insert(key, item);
+        Ok(())
     }
 
     /// Writes the outline of a body, `object` or `pusher`, one part a line; the names of its parts

@@ -25,7 +25,7 @@ use toml::de::DeTable;
 use crate::mounts::Mounts;
 
 use document::{Node, Source, Table};
-pub use edit::SceneEdit;
+pub use edit::{SceneEdit, SceneWayError};
 pub use error::{SceneError, SceneProblem};
 pub use new_scene::NEW_SCENE;
 use plate::Plate;

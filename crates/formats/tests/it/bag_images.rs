@@ -177,10 +177,7 @@ fn sensors_of_a_bag_of_images_fill_the_frames_rows() {
     let topics = topics(&["image=/image", "wrench=/pusher/wrench"]);
     let (_, recording) = images(&file(&lines), &topics).unwrap();
     let readings = recording.readings(&topics, time(), 0.05).unwrap();
-    assert_eq!(
-        readings.tactile,
-        [[None, Some(false), Some(true), Some(false)]]
-    );
+    assert_eq!(readings.tactile, [[None, Some(false), Some(true), None]]);
     assert_eq!(readings.force, [None, None, Some([2.0, 3.0]), None]);
     assert_eq!(readings.warnings, []);
 

@@ -3,7 +3,10 @@
 
 use stickslip::Log;
 use stickslip_dynamics::Pose;
-use stickslip_formats::{LogWarning, SensorError, check_sensors, read_log, read_scene, write_log};
+use stickslip_formats::{
+    LogWarning, NamedColumns, SensorError, check_sensors, log_of_columns, read_log, read_scene,
+    write_log,
+};
 
 const HEADER: &str = "time,object_x,object_y,object_theta,pusher_x,pusher_y,pusher_theta";
 const SCENE: &str = "gravity = 9.81
@@ -108,6 +111,21 @@ fn columns_are_found_by_name_in_any_order() {
     );
     assert_eq!(log.tactile, [[Some(false)], [Some(true)]]);
     assert!(log.force.is_empty());
+}
+
+#[test]
+fn columns_with_an_infinite_pose_are_refused() {
+    let names = HEADER.split(',').map(str::to_owned);
+    let mut columns = [[0.0, 1.0]; 7];
+    columns[2][1] = f64::NEG_INFINITY;
+    let named = names
+        .zip(columns.iter().map(|column| &column[..]))
+        .collect();
+    let error = log_of_columns(&NamedColumns::new(named).unwrap(), "log").unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "row 1: `object_y` is -inf; it must be finite"
+    );
 }
 
 #[test]

@@ -3,8 +3,8 @@
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
 use crate::bag::{
-    Line, MS, Order, file, file_with, object, pose, pusher, quaternion, read, stamped, topics,
-    touch, wrench, xs,
+    Line, MS, Order, file, file_with, longer, object, pose, pusher, quaternion, read, stamped,
+    topics, touch, wrench, xs,
 };
 use mcap::Compression;
 use stickslip::Log;
@@ -19,127 +19,88 @@ fn log(lines: &[Line]) -> Log {
 }
 
 #[test]
-fn rows_stand_at_object_stamps_with_the_nearest_pusher_pose_within_a_millisecond() {
+fn measurements_have_rows_at_their_own_times() {
     let log = log(&[
         object(0, 1.0),
         object(100 * MS, 2.0),
         pusher(-MS / 2, 10.0),
-        pusher(MS, 11.0),
         pusher(50 * MS, 12.0),
-        pusher(101 * MS, 13.0),
-        pusher(101 * MS + 1, 14.0),
+        pusher(100 * MS, 13.0),
+        pusher(100 * MS + 1, 14.0),
+        touch(1, 70 * MS, true),
+        touch(1, 50 * MS, false),
     ]);
-    assert_eq!(log.time, [0.0, 0.1]);
-    assert_eq!(xs(&log.object), [Some(1.0), Some(2.0)]);
-    // half a millisecond is nearer than a whole one
-    assert_eq!(xs(&log.pusher), [Some(10.0), Some(13.0)]);
-    assert!(log.tactile.is_empty() && log.force.is_empty());
+    assert_eq!(log.time, [-0.0005, 0.0, 0.05, 0.07, 0.1, 0.100_000_001]);
+    let of = |row: usize| {
+        (
+            xs(&log.object)[row],
+            xs(&log.pusher)[row],
+            log.tactile[0][row],
+        )
+    };
+    let rows: Vec<_> = (0..6).map(of).collect();
+    let expected = [
+        (None, Some(10.0), None),
+        (Some(1.0), None, None),
+        (None, Some(12.0), Some(false)),
+        (None, None, Some(true)),
+        (Some(2.0), Some(13.0), None),
+        (None, Some(14.0), None),
+    ];
+    assert_eq!(rows, expected);
+    assert!(log.force.is_empty());
 }
 
 #[test]
-fn fast_pusher_makes_rows_only_where_the_camera_is_blocked_at_about_its_rate() {
-    // 25 Hz, occluded from 200 to 400 ms and from 600 ms on; the pusher at 500 Hz from 200 ms
-    // before
-    let seen = |k: &i64| *k <= 5 || (10..=15).contains(k);
-    let lines: Vec<Line> = (0..25)
-        .filter(seen)
-        .map(|k| object(40 * MS * k, 0.0))
-        .chain((-100..500).map(|k| pusher(2 * MS * k, k as f64)))
-        .collect();
-    let log = log(&lines);
-    let dark = |from: f64, to: f64| {
-        let rows = log.time.iter().zip(&log.object);
-        let inside = rows.filter(|(time, _)| **time > from && **time < to);
-        let times: Vec<f64> = inside
-            .map(|(time, pose)| pose.map_or(*time, |_| f64::NAN))
-            .collect();
-        assert!(times.iter().all(|time| time.is_finite()), "{times:?}");
-        times.len()
-    };
-    assert_eq!((dark(0.2, 0.4), dark(0.6, 1.0), dark(-1.0, 0.0)), (4, 9, 5));
-    assert_eq!(log.object.iter().flatten().count(), 12);
-    let steps: Vec<f64> = log.time.array_windows().map(|[a, b]| b - a).collect();
-    assert!(
-        steps.iter().all(|h| (0.035..=0.045).contains(h)),
-        "{steps:?}"
+fn stamps_that_are_equal_in_seconds_are_one_row_with_the_covariance() {
+    // 240 ns apart are one number of seconds since 1970
+    let now = 1_700_000_000_000 * MS;
+    let object = longer(
+        "geometry_msgs/msg/PoseWithCovarianceStamped",
+        now + 40,
+        1.0,
+        None,
+        36,
     );
-    assert!(log.pusher.iter().all(Option::is_some));
+    let log = log(&[object, pusher(now, 2.0)]);
+    assert_eq!(
+        (xs(&log.object), xs(&log.pusher)),
+        (vec![Some(1.0)], vec![Some(2.0)])
+    );
+    assert!(log.object_covariance[0].is_some());
 }
 
 #[test]
-fn two_poses_of_the_object_leave_rows_of_the_pusher_between_them() {
-    let lines: Vec<Line> = [object(0, 0.0), object(3000 * MS, 1.0)]
-        .into_iter()
-        .chain((0..100).map(|k| pusher(30 * MS * k, 0.0)))
-        .chain((0..3000).map(|k| pusher(4000 * MS + MS * k, 0.0)))
-        .collect();
-    let slow = log(&lines[..102]);
-    assert_eq!((slow.len(), slow.object.iter().flatten().count()), (101, 2));
-    let fast = log(&lines);
-    assert_eq!(fast.time.iter().filter(|time| **time >= 4.0).count(), 60);
-}
-
-#[test]
-fn pusher_between_two_frames_is_interpolated_without_a_row_of_its_own() {
-    let lines: Vec<Line> = (0..20)
-        .flat_map(|k| {
-            [
-                object(40 * MS * k, 0.0),
-                pusher(40 * MS * k + 13 * MS, k as f64),
-            ]
-        })
-        .collect();
+fn reading_shortly_after_a_step_is_in_its_row() {
+    let us = MS / 1000;
+    // rows at 0, 30 and 60 ms make steps; that 0.3 ms later makes none
+    let mut lines = vec![object(30 * MS, 0.0), object(60 * MS, 0.0)];
+    lines.extend([pusher(0, 0.0), pusher(30 * MS + 300 * us, 0.0)]);
+    lines.extend([
+        touch(1, 30 * MS + 100 * us, false),
+        touch(1, 30 * MS + 400 * us, true),
+        touch(1, 30 * MS + 900 * us, false),
+        touch(1, 31 * MS + 100 * us, false),
+        touch(1, 59 * MS + 900 * us, true),
+    ]);
     let log = log(&lines);
-    assert_eq!((log.len(), log.object.iter().flatten().count()), (20, 20));
-    let expected = 3.0 + 27.0 / 40.0;
-    assert!((log.pusher[4].unwrap().x - expected).abs() < 1e-12);
+    let times = [0.0, 0.03, 0.0303, 0.0311, 0.0599, 0.06];
+    assert_eq!(log.time, times);
+    let cells = [None, Some(true), None, Some(false), Some(true), None];
+    assert_eq!(log.tactile, [cells]);
 }
 
 #[test]
-fn pusher_is_interpolated_over_at_most_a_fifth_of_a_second() {
-    let turned = |angle: f64| [0.0, 0.0, libm::sin(angle / 2.0), libm::cos(angle / 2.0)];
-    let lines = |last: i64| {
-        vec![
-            object(-10 * MS, 0.0),
-            object(50 * MS, 0.0),
-            object(300 * MS, 0.0),
-            quaternion("/pusher/pose", 0, 1.0, turned(3.0)),
-            quaternion("/pusher/pose", last, 2.0, turned(-3.0)),
-        ]
-    };
-    let near = log(&lines(200 * MS));
-    assert_eq!(near.time, [-0.01, 0.05, 0.3]);
-    assert_eq!(xs(&near.pusher), [None, Some(1.25), None]);
-    // the short way, over half a turn
-    assert!((near.pusher[1].unwrap().theta - (3.0 + (2.0 * PI - 6.0) / 4.0)).abs() < 1e-12);
-    assert_eq!(xs(&log(&lines(200 * MS + 1)).pusher)[1], None);
-}
-
-#[test]
-fn tactile_cell_is_any_touch_in_the_interval_else_the_last_reading_within_half_a_second() {
-    let rows = [0, 1000, 2000, 2500, 2501].map(|ms| object(ms * MS, 0.0));
-    let readings = [
-        (-0, true),
-        (900, true),
-        (1000, false),
-        (1001, false),
-        (2000, false),
-        (2000, true),
-    ];
-    let touches = readings.map(|(ms, on)| touch(1, ms * MS, on));
-    let lines = [rows.as_slice(), &[pusher(0, 0.0)], &touches].concat();
-    let cells = [Some(true), Some(true), Some(true), Some(true), None];
-    assert_eq!(log(&lines).tactile, [cells]);
-
-    // an interval with false readings only, and a reading before the first row
-    let lines = [
-        object(400 * MS, 0.0),
-        object(600 * MS, 0.0),
-        pusher(400 * MS, 0.0),
-        touch(1, 0, true),
-        touch(1, 500 * MS, false),
-    ];
-    assert_eq!(log(&lines).tactile, [[Some(true), Some(false)]]);
+fn readings_far_from_all_poses_are_left_out_and_counted() {
+    let mut lines = vec![object(2000 * MS, 0.0), pusher(2100 * MS, 0.0)];
+    lines.extend([999, 1000, 3100, 3101].map(|ms| touch(1, ms * MS, true)));
+    let (log, warnings) = read(&file(&lines));
+    assert_eq!(log.time, [1.0, 2.0, 2.1, 3.1]);
+    let left_out = warnings[0].left_out().unwrap();
+    assert_eq!(
+        (left_out.place.as_str(), left_out.count, left_out.of),
+        ("/fixel_1/contact", 2, 4)
+    );
 }
 
 #[test]
@@ -198,7 +159,14 @@ fn angle_is_that_about_the_vertical_and_unwrapped() {
     lines.push(pusher(0, 0.0));
     // in the file in another order than in time
     lines.reverse();
-    for (k, pose) in log(&lines).object.iter().enumerate() {
+    let (log, warnings) = read(&file(&lines));
+    assert!(
+        warnings[0]
+            .to_string()
+            .contains("4 messages were recorded after later ones, by up to 400.0 ms"),
+        "{warnings:?}"
+    );
+    for (k, pose) in log.object.iter().enumerate() {
         assert!(
             (pose.unwrap().theta - k as f64 * PI / 2.0).abs() < 1e-12,
             "{k}: {pose:?}"
@@ -310,7 +278,7 @@ fn odd_recordings_are_read_with_a_warning() {
     ];
     let (log, warnings) = read(&file(&other_clock));
     assert_eq!(log.tactile, [[None]]);
-    let words = "bag.mcap: /fixel_1/contact: all messages are at 1700000000.000000000 to 1700000000.000000000 s and the poses at 0.000000000";
+    let words = "bag.mcap: /fixel_1/contact: 1 of 1 messages are left out: the topic is at 1700000000.000000000 to 1700000000.000000000 s, the poses at 0.000000000";
     assert!(
         warnings[0].to_string().starts_with(words),
         "{}",

@@ -41,18 +41,6 @@ fn messages_are_refused_with_place_value_rule_and_next_step() {
     let place = "/object/pose, message 2 (log time 0.003000000 s): ";
     for (line, words) in [
         (
-            pose([f64::NAN, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0], "world", MS),
-            "position.x is NaN; numbers must be finite",
-        ),
-        (
-            pose([0.0, 0.0, f64::INFINITY, 0.0, 0.0, 0.0, 1.0], "world", MS),
-            "position.z is inf",
-        ),
-        (
-            pose([0.0; 7], "world", MS),
-            "the orientation's length is 0; it must be 1 within 0.01",
-        ),
-        (
             pose([0.0, 0.0, 0.0, 0.0, 0.0, 0.8, 0.8], "world", MS),
             "the orientation's length is 1.13",
         ),
@@ -65,7 +53,7 @@ fn messages_are_refused_with_place_value_rule_and_next_step() {
             "header.frame_id is `map`, and `world` in /object/pose; all must be in one frame",
         ),
         (
-            pose(upright, "world", -5),
+            pose([1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0], "world", -5),
             "header.stamp is -0.000000005 s, as in message 1; each message of a topic needs",
         ),
         (

@@ -8,6 +8,7 @@ mod bag_bytes;
 mod bag_covariance;
 mod bag_frames;
 mod bag_images;
+mod bag_runs;
 mod data_folder;
 mod estimate;
 mod experiment;

@@ -87,3 +87,38 @@ fn foot_loads_that_are_no_shares_are_refused() {
         assert!(error.contains("foot_loads"), "{error}");
     }
 }
+
+#[test]
+fn put_makes_tables_replaces_values_and_removes_them() {
+    let mut edit = SceneEdit::new(SCENE, "scene.toml").unwrap();
+    edit.put("support.friction", Some(0.123_456_789.into()))
+        .unwrap();
+    edit.put("camera.latency", Some(0.02.into())).unwrap();
+    edit.put("support.tripod_radius", None).unwrap();
+    edit.put("start.speed", None).unwrap();
+    let expected = SCENE
+        .replace("0.28   # a guess", "0.123456789   # a guess")
+        .replace("tripod_radius = 0.02\n", "");
+    assert_eq!(edit.text(), expected + "\n[camera]\nlatency = 0.02\n");
+
+    let mut edit = SceneEdit::new(SCENE, "scene.toml").unwrap();
+    let fixel = "{ position = [0.1, 0.0], shape = [ { disc = { radius = 0.01 } } ] }";
+    let fixels = format!("[{fixel}, {fixel}]").parse().unwrap();
+    edit.put("fixel", Some(fixels)).unwrap();
+    assert_eq!(edit.text().matches("[[fixel]]").count(), 2);
+    let setup = read_scene(&edit.text(), "scene.toml").unwrap();
+    assert_eq!(setup.scene.fixels.len(), 2);
+}
+
+#[test]
+fn put_refuses_ways_to_no_value() {
+    let mut edit = SceneEdit::new(SCENE, "scene.toml").unwrap();
+    for way in ["", "pusher.", ".friction", "gravity.x", "object.tags.tag_7"] {
+        let error = edit.put(way, Some(1.0.into())).unwrap_err().to_string();
+        assert!(
+            error.starts_with(&format!("`{way}` names no value")),
+            "{error}"
+        );
+    }
+    assert_eq!(edit.text(), SCENE);
+}

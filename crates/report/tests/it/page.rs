@@ -152,6 +152,28 @@ fn page_of_ten_minutes_shows_all_and_stays_small() {
     }
 }
 
+/// Camera at 10 Hz, pusher at 30 Hz: the camera is on between its poses, and no body blinks.
+#[test]
+fn rows_of_another_sensor_are_no_occlusion() {
+    let (setup, mut log) = (setup(), log(90));
+    for row in (0..90).filter(|row| row % 3 != 0) {
+        log.object[row] = None;
+    }
+    let experiment = experiment("mixed", &setup, &log, 5);
+    // before the second pose nothing tells how often they come
+    assert_eq!(experiment.story().lost, 2);
+    let report = Report {
+        sections: vec![experiment.section()],
+        ..Report::default()
+    };
+    let data = data(&report.to_html());
+    // hidden from row 54 on
+    let hidden = data["hidden"].as_array().unwrap();
+    assert!((3..54).all(|row| hidden[row] == 0), "{hidden:?}");
+    let x = data["truth"]["x"].as_array().unwrap();
+    assert!((0..90).all(|row| x[row].is_number()), "{x:?}");
+}
+
 #[test]
 fn data_read_back_to_the_numbers_they_were() {
     let rows = 90;

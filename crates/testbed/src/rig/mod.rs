@@ -105,6 +105,19 @@ impl Rig {
     /// [`TrialError`]: the camera's rate or a friction value is none, bodies overlap at the start,
     /// the object would tip, or there are too many steps, as with an inertia that is far too small.
     pub fn run(&self, trial: &Trial<'_>) -> Result<Trace, TrialError> {
+        self.run_observed(trial, &mut |_| ())
+    }
+
+    /// Runs an experiment like [`run`](Self::run); `progress` gets the number of finished frames,
+    /// at every time step.
+    ///
+    /// # Errors
+    /// Those of [`run`](Self::run).
+    pub fn run_observed(
+        &self,
+        trial: &Trial<'_>,
+        progress: &mut dyn FnMut(usize),
+    ) -> Result<Trace, TrialError> {
         trial.check([
             ("mu_s", self.mu_s),
             ("mu_p", self.mu_p),
@@ -126,6 +139,7 @@ impl Rig {
         let mut friction = Mean::default();
         for k in 1..trial.frames() {
             for step in 0..steps as u32 {
+                progress(k);
                 state.step(trial.time(k - 1) + h * f64::from(step), h);
             }
             let frame = state.frame(trial.time(k), 1.0 / trial.rate);

@@ -80,7 +80,8 @@ fn simulated(truth: &Setup, physics: Physics, k: usize, seed: u64) -> (Push, Tru
         repeats: 0.0,
         pusher_memory: PUSHER_MEMORY,
     };
-    let simulation = Simulation::run(&setup, &TruthFacts::default(), &options).unwrap();
+    let simulation =
+        Simulation::run(&setup, &TruthFacts::default(), &options, &mut |_, _| ()).unwrap();
     let experiment = simulation.into_experiment(setup);
     let push = Push {
         name: format!("push {k}"),

@@ -1,0 +1,24 @@
+//! Reasons to doubt a fit: [`doubts`].
+
+use stickslip::diagnosis::misread;
+
+use crate::fitted::Fit;
+use crate::push::Push;
+
+/// Finds reasons to doubt a fit to `pushes`, in words: numbers in other units and the like in a
+/// push, which is named, and chains that have not converged.
+#[must_use]
+pub fn doubts(pushes: &[Push], fit: &Fit) -> Vec<String> {
+    let of_push = |push: &Push| {
+        let findings = misread(&push.setup, &push.log).into_iter();
+        let named = findings.map(|finding| format!("{}: {finding}", push.name));
+        named.collect::<Vec<_>>()
+    };
+    let unsettled = (!fit.sampling.settled).then(|| {
+        let split_rhat = fit.sampling.split_rhat;
+        format!(
+            "the chains have not converged (split R-hat {split_rhat:.2}); the spreads are rough"
+        )
+    });
+    pushes.iter().flat_map(of_push).chain(unsettled).collect()
+}
