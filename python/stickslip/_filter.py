@@ -103,15 +103,9 @@ def particles(
     """Returns the particles of the particle filter after the rows in ``rows`` (None: all rows).
 
     ``row`` (R,) has the rows with particles, in rising order. Rows before the first object pose
-    have none. Two sets follow, each array (R, N), with weights that sum to 1 in a row:
+    have none. The other arrays are (R, N), with weights that sum to 1 in a row: ``weight``, ``x``,
+    ``y`` (m), ``theta`` (rad), ``mu_s``, ``mu_p``, ``mu_f``, ``d_tri`` (m).
 
-    - particles of the pose: ``weight``, ``x``, ``y`` (m), ``theta`` (rad), ``mu_s``, ``mu_p``,
-      ``mu_f``, ``d_tri`` (m)
-    - particles that estimate friction: ``friction_weight``, ``friction_mu_s``, ``friction_mu_p``,
-      ``friction_mu_f``, ``friction_d_tri`` (m)
-
-    The robust model has separate particles for friction, as they were when the camera last saw the
-    object move. The two sets are the same in the paper's model and with exactly known friction.
     Offsets of the rig and positions of the feet are not included.
     """
     if options.get("method", "particle") != "particle":
@@ -137,9 +131,8 @@ def samples(
 
     Chain c is a separate filter with the seed ``seed + c``. Its ``draws`` samples (None: one per
     particle) are drawn from its particles by systematic resampling. The samples are not a sequence:
-    chains can be compared (R-hat), autocorrelation has no meaning. The robust model has separate
-    particles for friction. Samples of friction are joint, samples of the pose are joint, but the
-    two groups are independent of each other.
+    chains can be compared (R-hat), autocorrelation has no meaning. Pose and friction of a sample
+    are those of one particle.
 
     Returns ``x``, ``y`` (m), ``theta`` (rad), ``mu_s``, ``mu_p``, ``mu_f``, ``d_tri`` (m), each
     (chains, draws, R) for the R rows in ``rows``. ArviZ 1.0 and later takes them by
@@ -157,30 +150,22 @@ def samples(
         if missing:
             raise Error(f"row {missing[0]} has no particles; rows go from the first object pose to the last row")
         order = np.searchsorted(cloud["row"], np.asarray(rows, dtype=np.float64))
-        per_chain.append(
-            _drawn(cloud, ("x", "y", "theta"), "", order, draws, (seed + chain, 0))
-            | _drawn(cloud, ("mu_s", "mu_p", "mu_f", "d_tri"), "friction_", order, draws, (seed + chain, 1))
-        )
+        per_chain.append(_drawn(cloud, order, draws, seed + chain))
     return {name: np.stack([chain[name] for chain in per_chain]) for name in per_chain[0]}
 
 
 def _drawn(
-    cloud: dict[str, NDArray[np.float64]],
-    names: Sequence[str],
-    prefix: str,
-    order: NDArray[np.intp],
-    draws: int | None,
-    seed: tuple[int, int],
+    cloud: dict[str, NDArray[np.float64]], order: NDArray[np.intp], draws: int | None, seed: int
 ) -> dict[str, NDArray[np.float64]]:
-    """Draws joint samples (draws, R) of ``names`` from the columns with this ``prefix``."""
-    picked = [_systematic(cloud[f"{prefix}weight"][row], draws, seed) for row in order]
+    """Draws joint samples (draws, R) of pose and friction."""
+    picked = [_systematic(cloud["weight"][row], draws, seed) for row in order]
     return {
-        name: np.stack([cloud[prefix + name][row, pick] for row, pick in zip(order, picked, strict=True)], axis=-1)
-        for name in names
+        name: np.stack([cloud[name][row, pick] for row, pick in zip(order, picked, strict=True)], axis=-1)
+        for name in ("x", "y", "theta", "mu_s", "mu_p", "mu_f", "d_tri")
     }
 
 
-def _systematic(weights: NDArray[np.float64], draws: int | None, seed: tuple[int, int]) -> NDArray[np.intp]:
+def _systematic(weights: NDArray[np.float64], draws: int | None, seed: int) -> NDArray[np.intp]:
     """Returns particle indices (draws,) by systematic resampling, in random order."""
     count = len(weights) if draws is None else draws
     rng = np.random.default_rng(seed)

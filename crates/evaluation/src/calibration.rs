@@ -20,9 +20,6 @@ use crate::variant::Variant;
 /// Quantities of a run: the pose at its end, the four friction parameters.
 pub const QUANTITIES: [&str; 7] = ["x", "y", "theta", "mu_s", "mu_p", "mu_f", "d_tri"];
 
-/// Number of pose quantities among them.
-const POSE: usize = 3;
-
 /// Place of the truth in a belief.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placed {

@@ -134,10 +134,4 @@ impl Observer for Watched<'_> {
             observer.on_row(row, particles);
         }
     }
-
-    fn on_friction(&self, row: usize, particles: &ParticleView<'_>) {
-        if let Some(observer) = self.observer {
-            observer.on_friction(row, particles);
-        }
-    }
 }

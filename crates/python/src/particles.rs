@@ -14,23 +14,8 @@ use crate::log::log_of;
 use crate::run_options::RunArguments;
 use crate::scene::Scene;
 
-/// Columns that are kept of a particle: the weight, the pose and the friction, then weight and
-/// friction of one of those that have the estimate's.
-const NAMES: [&str; 13] = [
-    "weight",
-    "x",
-    "y",
-    "theta",
-    "mu_s",
-    "mu_p",
-    "mu_f",
-    "d_tri",
-    "friction_weight",
-    "friction_mu_s",
-    "friction_mu_p",
-    "friction_mu_f",
-    "friction_d_tri",
-];
+/// Columns that are kept of a particle: the weight, the pose and the friction.
+const NAMES: [&str; 8] = ["weight", "x", "y", "theta", "mu_s", "mu_p", "mu_f", "d_tri"];
 
 /// Keeps the particles after some rows.
 #[derive(Debug)]
@@ -44,20 +29,6 @@ struct Keeper {
 struct Kept {
     rows: Vec<usize>,
     columns: [Vec<f64>; NAMES.len()],
-    /// The particles that have the estimate's friction, when the camera last saw the object: weight
-    /// and friction.
-    known: Option<Vec<[f64; 5]>>,
-}
-
-/// Weight and friction of each particle.
-fn weighed_friction(particles: &ParticleView<'_>) -> Vec<[f64; 5]> {
-    let weighed = particles.weights().iter().enumerate();
-    weighed
-        .map(|(particle, weight)| {
-            let [mu_s, mu_p, mu_f, d_tri] = particles.friction(particle).fields().map(|x| *x);
-            [*weight, mu_s, mu_p, mu_f, d_tri]
-        })
-        .collect()
 }
 
 impl Observer for Keeper {
@@ -72,36 +43,22 @@ impl Observer for Keeper {
             return;
         }
         let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
-        let Kept {
-            rows,
-            columns,
-            known,
-        } = &mut *kept;
+        let Kept { rows, columns } = &mut *kept;
         rows.push(row);
-        let own = weighed_friction(particles);
-        let known = known.as_ref().unwrap_or(&own);
-        for (particle, (own, known)) in own.iter().zip(known).enumerate() {
-            let [weight, friction @ ..] = own;
-            let pose = particles.pose(particle);
+        for (particle, weight) in particles.weights().iter().enumerate() {
+            let (pose, friction) = (particles.pose(particle), particles.friction(particle));
             let numbers = [weight]
                 .into_iter()
                 .chain(pose.fields())
-                .chain(friction)
-                .chain(known);
+                .chain(friction.fields());
             for (column, number) in columns.iter_mut().zip(numbers) {
                 column.push(*number);
             }
         }
     }
-
-    fn on_friction(&self, _: usize, particles: &ParticleView<'_>) {
-        let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
-        kept.known = Some(weighed_friction(particles));
-    }
 }
 
-/// Rows that have particles (R,), and weight, pose and friction of each, and of those that have the
-/// estimate's friction, (R * N,) row by row.
+/// Rows that have particles (R,), and weight, pose and friction of each, (R * N,) row by row.
 #[pyfunction]
 #[pyo3(signature = (log, scene, options, rows = None, progress = None))]
 pub fn particles<'py>(
@@ -122,7 +79,7 @@ pub fn particles<'py>(
         kept: Mutex::default(),
     };
     run_log(py, scene.get(), &log, &options.0, progress, Some(&keeper))?;
-    let Kept { rows, columns, .. } = keeper
+    let Kept { rows, columns } = keeper
         .kept
         .into_inner()
         .unwrap_or_else(PoisonError::into_inner);
