@@ -152,8 +152,8 @@ pub enum CsvProblem {
     },
     /// Time does not rise.
     #[error(
-        "time {} s comes after {} s; it must rise strictly from row to row. Sort the rows and remove repeated ones",
-        number::text(*.found), number::text(*.before)
+        "time {} s comes after {} s; it must rise strictly from row to row. {}",
+        number::text(*.found), number::text(*.before), in_order(*.found, *.before)
     )]
     TimeNotRising {
         /// Time of this row \[s\].
@@ -177,4 +177,14 @@ pub enum CsvProblem {
         /// True if this cell is filled.
         filled: bool,
     },
+}
+
+/// Advice on a time that does not rise.
+fn in_order(found: f64, before: f64) -> &'static str {
+    match found == before {
+        true => {
+            "If times lost their digits, write milliseconds at least; else remove the repeated rows"
+        }
+        false => "Sort the rows",
+    }
 }

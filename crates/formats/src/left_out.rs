@@ -25,6 +25,8 @@ pub struct LeftOut {
 pub enum Reason {
     /// The numbers are those of a body that was not seen: a quaternion of zeros, NaN.
     NotMeasured,
+    /// The stamp is 0: its sender had no clock yet.
+    Unstamped,
     /// The message is equal to an earlier one, stamp and all.
     Repeated,
     /// Other transforms on the way between the frames are not known at that time.
@@ -47,6 +49,9 @@ impl fmt::Display for LeftOut {
         match &self.reason {
             Reason::NotMeasured => f.write_str(
                 "measurements are left out: a quaternion of zeros or a number that is not finite means that nothing was measured",
+            ),
+            Reason::Unstamped => f.write_str(
+                "messages are left out: their header.stamp is 0, and that of others is not",
             ),
             Reason::Repeated => f.write_str(
                 "messages are left out: each is equal to an earlier one. Record the topic once",

@@ -124,6 +124,8 @@ pub fn misread(setup: &Setup, log: &Log) -> Vec<Finding> {
         findings.extend(left_out::check(&evidence));
         findings.extend(noise::pusher(&evidence));
         findings.extend(contact::none(&evidence));
+        let gap = pushing::check(&evidence).into_iter();
+        findings.extend(gap.filter(|finding| finding.severity != Severity::Ok));
     }
     findings
 }

@@ -1,14 +1,19 @@
 //! Noise of object and pusher poses against the scene's `[camera]`.
 
-use super::evidence::Evidence;
+use super::evidence::{Evidence, median};
 use super::finding::{Finding, Subject};
 use super::lasting::Lasting;
 use super::pose_noise::PoseNoise;
+use crate::covariance::PoseCovariance;
 
 /// Ratios of measured to stated noise that are worth a warning: of the object, whose noise the
 /// robust model learns, and of the pusher.
 const FAR_OFF: f64 = 4.0;
 const PUSHER_OFF: f64 = 2.0;
+
+/// Ratio of stated to measured noise above which covariances are made up, or in other units: poses
+/// then count for nothing.
+const MADE_UP: f64 = 30.0;
 
 /// Factor of overconfidence from which on errors that last are worth a warning.
 const TOO_SURE: f64 = 1.5;
@@ -35,9 +40,10 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
     let mut findings = Vec::new();
     // poses that alternate between two places are not noisy, but seem so
     if evidence.two_places.is_none() {
-        findings.push(match evidence.noise {
-            None => Finding::ok(Subject::Noise, "not measured: too few object poses"),
-            Some(noise) => compared(&noise, &stated, evidence.size()),
+        findings.push(match (evidence.noise, of_covariances(evidence)) {
+            (None, _) => Finding::ok(Subject::Noise, "not measured: too few object poses"),
+            (Some(noise), None) => compared(&noise, &stated, evidence.size()),
+            (Some(noise), Some(covariances)) => covered(&noise, &covariances),
         });
         let lasting = evidence.lasting.as_ref();
         findings.extend(lasting.and_then(|errors| lasts(errors, &stated)));
@@ -81,6 +87,42 @@ fn compared(noise: &PoseNoise, stated: &PoseNoise, size: f64) -> Finding {
             "set position_std and orientation_std under [camera] to the measured values",
         ),
         false => Finding::ok(Subject::Noise, found),
+    }
+}
+
+/// Noise by the covariances that come with the object poses, in the median; `None` if most poses
+/// have none.
+fn of_covariances(evidence: &Evidence<'_>) -> Option<PoseNoise> {
+    let log = evidence.log;
+    let rows = log.object.iter().zip(&log.object_covariance);
+    let known = rows.filter_map(|(pose, covariance)| covariance.filter(|_| pose.is_some()));
+    let known: Vec<PoseCovariance> = known.collect();
+    let poses = log.object.iter().flatten().count();
+    (2 * known.len() > poses).then(|| PoseNoise {
+        position: median(known.iter().map(|of| (0.5 * (of.x + of.y)).sqrt())),
+        angle: median(known.iter().map(|of| of.theta.sqrt())),
+    })
+}
+
+/// Compares the measured noise with that of the poses' own covariances, by which they count.
+fn covered(noise: &PoseNoise, stated: &PoseNoise) -> Finding {
+    let found = format!(
+        "noise of object poses {:.2} mm and {:.4} rad; their covariances: {:.2} mm and {:.4} rad",
+        1e3 * noise.position,
+        noise.angle,
+        1e3 * stated.position,
+        stated.angle
+    );
+    let advice = "give the covariances of the poses in m and rad as measured, or zeros where they are not known: [camera] then counts";
+    let least = NEGLIGIBLE;
+    let ratio = |of: fn(&PoseNoise) -> f64| of(stated).max(of(&least)) / of(noise).max(of(&least));
+    let [position, angle] = [ratio(|noise| noise.position), ratio(|noise| noise.angle)];
+    match position.max(angle) {
+        above if above > MADE_UP => Finding::problem(Subject::Noise, found, advice),
+        above if above > FAR_OFF || position.min(angle) < 1.0 / FAR_OFF => {
+            Finding::warning(Subject::Noise, found, advice)
+        }
+        _ => Finding::ok(Subject::Noise, found),
     }
 }
 

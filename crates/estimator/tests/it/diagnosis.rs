@@ -1,9 +1,9 @@
 //! Findings of `diagnose` on logs whose faults are known: a disc is pushed along x by a pusher that
 //! starts away from it, and stops.
 
-use stickslip::diagnosis::{Finding, Severity, Subject, diagnose, misread};
+use stickslip::diagnosis::{Finding, Severity, Subject, diagnose, misread, refused};
 use stickslip::dynamics::{Part, Pose, Shape};
-use stickslip::{Log, Row, Setup, Tracker, TrackerOptions};
+use stickslip::{Log, PoseCovariance, Row, Setup, Tracker, TrackerOptions};
 
 use crate::common::{disc, setup};
 
@@ -336,4 +336,52 @@ fn an_assumed_stall_force_without_fixels_asks_for_nothing() {
         finding.found.ends_with("without fixels nothing jams"),
         "{finding}"
     );
+}
+
+/// Covariances count as they are given: those of a driver that fills in numbers make poses
+/// worthless.
+#[test]
+fn covariances_that_are_made_up_are_named() {
+    let with = |position: f64| {
+        let mut log = FAST.log();
+        let covariance = PoseCovariance {
+            x: position * position,
+            y: position * position,
+            theta: TURN_NOISE[0] * TURN_NOISE[0],
+            ..PoseCovariance::default()
+        };
+        log.object_covariance = vec![Some(covariance); log.len()];
+        log
+    };
+    let setup = FAST.setup();
+    assert!(misread(&setup, &with(NOISE[0])).is_empty());
+    let found = refused(&setup, &with(0.07)).expect("a problem");
+    assert_eq!(found.subject, Subject::Noise, "{found}");
+    assert!(
+        found.found.contains("their covariances: 70.00 mm"),
+        "{found}"
+    );
+    assert_only(
+        &FAST.faults(&with(8.0 * NOISE[0])),
+        Severity::Warning,
+        Subject::Noise,
+        "their covariances: 2.40 mm",
+    );
+}
+
+/// Poses of another point of the tool: a gap that stays is no swap of axes.
+#[test]
+fn pusher_that_is_away_by_a_constant_is_doubted_and_not_refused() {
+    let long = Push {
+        length: 0.2,
+        ..FAST
+    };
+    let mut log = long.log();
+    log.pusher.iter_mut().for_each(|pose| moved(pose, -0.004));
+    let setup = long.setup();
+    assert_eq!(refused(&setup, &log), None);
+    let doubts = misread(&setup, &log);
+    let gap = doubts.iter().find(|f| f.subject == Subject::PushingGap);
+    assert!(gap.is_some(), "{:#?}", diagnose(&setup, &log));
+    assert!(misread(&setup, &long.log()).is_empty());
 }

@@ -12,6 +12,8 @@ use crate::log_mcap::series::seconds_text;
 const FAR: i64 = SECOND / 2;
 /// A step back by more than this is that of a clock if messages go on from there (ns).
 const NEAR: i64 = SECOND / 50;
+/// A day (ns).
+const DAY: i64 = 86_400 * SECOND;
 /// Number of messages that then go on behind a later one.
 const GO_ON: usize = 4;
 
@@ -31,6 +33,15 @@ pub(crate) struct Late {
     pub count: usize,
     /// Longest delay (ns).
     pub longest: i64,
+}
+
+/// Leaves out what has a stamp of 0, if all others are more than a day later: its sender had no
+/// clock yet. A simulation begins at 0, and goes on from there.
+pub(crate) fn drop_unstamped<T>(messages: &mut Vec<T>, time: impl Fn(&T) -> i64) {
+    let others = messages.iter().map(&time).filter(|time| *time != 0);
+    if others.min().is_some_and(|first| first > DAY) {
+        messages.retain(|message| time(message) != 0);
+    }
 }
 
 /// Counts the messages that arrived late, each with its time (ns).

@@ -74,7 +74,7 @@ struct Messages<W: Write + Seek> {
 
 impl<W: Write + Seek> Messages<W> {
     fn new(writer: W, has_particles: bool, has_tripod: bool) -> Result<Self, McapWriteError> {
-        // markers and transforms repeat themselves; packed they take a fifth
+        // outlines and transforms repeat themselves from row to row
         let mut recorder = Recorder::new(writer, Some(Compression::Zstd))?;
         let pose = recorder.topic::<PoseWithCovarianceStamped>("/stickslip/pose")?;
         let tf = recorder.topic::<TfMessage>("/tf")?;

@@ -10,6 +10,8 @@ use crate::log_warning::LogWarning;
 pub(crate) struct Losses {
     /// Messages without a measurement.
     pub unmeasured: usize,
+    /// Messages whose stamp is 0, where others have one.
+    pub unstamped: usize,
     /// Messages that are equal to an earlier one.
     pub repeated: usize,
     /// Stamps at which another transform on the way is not known.
@@ -23,10 +25,11 @@ impl Losses {
     pub(crate) fn warnings(&self, place: &str, file: &str, kept: usize) -> Vec<LogWarning> {
         let counts = [
             (self.unmeasured, Reason::NotMeasured),
+            (self.unstamped, Reason::Unstamped),
             (self.repeated, Reason::Repeated),
             (self.unlinked, Reason::Unlinked),
         ];
-        let of = kept + self.unmeasured + self.repeated + self.unlinked;
+        let of = kept + self.unmeasured + self.unstamped + self.repeated + self.unlinked;
         let left_out = counts.into_iter().filter(|(count, _)| *count > 0);
         let left_out = left_out.map(|(count, reason)| LogWarning::LeftOut {
             file: file.to_owned(),

@@ -3,6 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
+use crate::log_mcap::source::frame_name;
 use crate::log_mcap::topics::TopicError;
 
 /// Two frames: the pose of `child` in `parent`.
@@ -67,8 +68,8 @@ impl FromStr for Place {
             Some((parent, child)) if ![topic, parent, child].contains(&"") => Ok(Self {
                 topic: topic.to_owned(),
                 frames: Some(Frames {
-                    parent: parent.to_owned(),
-                    child: child.to_owned(),
+                    parent: frame_name(parent).to_owned(),
+                    child: frame_name(child).to_owned(),
                 }),
             }),
             _ => Err(TopicError::NoFrames(text.to_owned())),

@@ -200,6 +200,8 @@ impl<'a> Source<'a> {
         &self,
         mut messages: Vec<FromMessage<'a, T>>,
     ) -> Result<(Series<T>, Losses), McapError> {
+        let measured = messages.len();
+        arrival::drop_unstamped(&mut messages, |message| message.timed.time);
         let stamps = messages
             .iter()
             .map(|message| (message.raw, message.timed.time));
@@ -209,7 +211,8 @@ impl<'a> Source<'a> {
         messages.sort_by_key(|message| message.timed.time);
         messages.dedup_by(|a, b| a.timed.time == b.timed.time && a.raw.data == b.raw.data);
         let losses = Losses {
-            unmeasured: self.content.messages.len() - count,
+            unmeasured: self.content.messages.len() - measured,
+            unstamped: measured - count,
             repeated: count - messages.len(),
             late,
             ..Losses::default()
@@ -251,6 +254,7 @@ impl CommonFrame {
         topic: &str,
         wrench: bool,
     ) -> Result<(), McapProblem> {
+        let found = frame_name(found);
         let (expected, of) = self
             .0
             .get_or_insert_with(|| (found.to_owned(), topic.to_owned()));
@@ -264,6 +268,11 @@ impl CommonFrame {
             wrench,
         })
     }
+}
+
+/// Name of a frame without the slash that older programs put before it.
+pub(crate) fn frame_name(name: &str) -> &str {
+    name.strip_prefix('/').unwrap_or(name)
 }
 
 /// The time of a stamp (ns).

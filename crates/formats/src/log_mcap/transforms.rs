@@ -15,7 +15,7 @@ use crate::log_mcap::pose_message::{TfMessage, TransformStamped};
 use crate::log_mcap::recording::RawMessage;
 use crate::log_mcap::rows::BRIDGED;
 use crate::log_mcap::series::{Series, Timed, seconds_text};
-use crate::log_mcap::source::{Source, stamp};
+use crate::log_mcap::source::{Source, frame_name, stamp};
 
 /// All transforms of a bag, by child and parent.
 pub(crate) struct Transforms<'a> {
@@ -69,8 +69,9 @@ impl<'a> Transforms<'a> {
                 let message: TfMessage =
                     decode(&raw.data).map_err(|problem| source.error(Some(raw), problem))?;
                 for transform in message.transforms {
-                    let parents = links.entry(transform.child_frame_id.clone()).or_default();
-                    let parent = transform.header.frame_id.clone();
+                    let child = frame_name(&transform.child_frame_id).to_owned();
+                    let parents = links.entry(child).or_default();
+                    let parent = frame_name(&transform.header.frame_id).to_owned();
                     let link = parents.entry(parent).or_insert_with(|| Link {
                         source,
                         is_static,
@@ -214,8 +215,10 @@ impl Link<'_> {
             };
             samples.push((*raw, time, isometry(transform)));
         }
+        let measured = samples.len();
         let mut late = Late::default();
         if !self.is_static {
+            arrival::drop_unstamped(&mut samples, |(_, time, _)| *time);
             let stamps = samples.iter().map(|(raw, time, _)| (*raw, *time));
             let checked = arrival::check(stamps, Clock::Stamp);
             late = checked.map_err(|(raw, problem)| self.source.error(Some(raw), problem))?;
@@ -224,7 +227,8 @@ impl Link<'_> {
         samples.sort_by_key(|(_, time, _)| *time);
         samples.dedup_by(|(_, a_time, a), (_, b_time, b)| a_time == b_time && a == b);
         let losses = Losses {
-            unmeasured: self.samples.len() - count,
+            unmeasured: self.samples.len() - measured,
+            unstamped: measured - count,
             repeated: count - samples.len(),
             late,
             ..Losses::default()

@@ -318,3 +318,45 @@ fn topics_that_are_not_read_are_named_with_their_messages() {
     );
     assert_eq!(warnings.len(), 1);
 }
+
+/// A sender whose clock has not begun stamps its messages with 0.
+#[test]
+fn messages_with_a_stamp_of_zero_are_left_out_and_counted() {
+    let now = 1_700_000_000_000 * MS;
+    let later = run(30, now, now);
+    let early = [
+        at(now - 90 * MS, object(0, 9.0)),
+        at(now - 50 * MS, object(0, 9.0)),
+        at(now - 40 * MS, pusher(0, 9.0)),
+    ];
+    let (log, warnings) = read(&file(&[&early[..], &later].concat()));
+    assert_eq!(log, read(&file(&later)).0);
+    let counts: Vec<_> = warnings.iter().filter_map(|w| w.left_out()).collect();
+    let found: Vec<_> = counts.iter().map(|c| (c.place.as_str(), c.count)).collect();
+    assert_eq!(found, [("/object/pose", 2), ("/pusher/pose", 1)]);
+    assert!(counts.iter().all(|c| c.reason == Reason::Unstamped));
+}
+
+/// ROS 1 wrote `/world` where ROS 2 writes `world`.
+#[test]
+fn frame_with_a_leading_slash_is_the_frame_without() {
+    let in_frame = |line: Line, stamp: i64, x: f64, frame: &str| Line {
+        data: stamped(
+            Order::Little,
+            stamp,
+            frame,
+            &[x, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0],
+        ),
+        ..line
+    };
+    let lines: Vec<Line> = (0..10)
+        .flat_map(|k| {
+            let (t, x) = (33 * MS * k, 0.001 * k as f64);
+            [
+                in_frame(object(t, x), t, x, "/world"),
+                in_frame(pusher(t, x), t, x, "world"),
+            ]
+        })
+        .collect();
+    assert_eq!(read(&file(&lines)).0.object.len(), 10);
+}
