@@ -76,12 +76,12 @@ impl Spread {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct EstimateRow {
     /// Pose; theta is unwrapped from the row before. The robust model publishes the geometric
-    /// median of the particles, docs/method.md (51), the paper's model their mean.
+    /// median of the particles, docs/model.md (49), the paper's model their mean.
     pub pose: Option<Pose>,
     /// Twist.
     pub twist: Option<Twist>,
     /// Friction parameters. The robust model keeps those of the row in which the camera last saw
-    /// the object, docs/method.md (52). `d_tri` is NaN-free: it is ignored where the feet are known
+    /// the object, docs/model.md, "Unknowns". `d_tri` is NaN-free: it is ignored where the feet are known
     /// (see [`Estimate::has_tripod`]).
     pub friction: Option<Friction>,
     /// Posterior probability of contact with the pusher.

@@ -1,7 +1,7 @@
 //! Ways to move particles to where weighing alone would leave few: [`Moves`].
 
 /// Ways in which the robust model moves particles, in addition to weighing and resampling
-/// (docs/method.md, (42) and (45)). Both are on by default. The paper's model has none.
+/// (docs/model.md, (42) and (45)). Both are on by default. The paper's model has none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Moves {
     /// Re-simulation of the steps since an occlusion began, if they explain touch and pusher too

@@ -18,7 +18,7 @@ use crate::particle::view::ParticleView;
 use crate::run::run_observed;
 use crate::setup::{Camera, Setup};
 
-/// One experiment drawn from the particle filter's prior (docs/method.md, "Contact mode").
+/// One experiment drawn from the particle filter's prior (docs/model.md).
 ///
 /// An object moves under the logged pusher as a particle does. Its friction, the rig's errors and
 /// the disturbing forces are drawn from their priors. Camera and sensors read it by the rules that

@@ -30,7 +30,7 @@ pub struct Run {
     pub collapses: u32,
     /// Number of re-simulations, with new random numbers, of the steps since an occlusion began.
     /// They happen when the particles explain pusher and touch ever worse (robust model;
-    /// docs/method.md (42)).
+    /// docs/model.md (42)).
     pub second_tries: u32,
     /// ln of the evidence of the log, up to a constant of the log. Of two scenes or two models, the
     /// one with the higher evidence predicted camera poses and tactile readings better. Rows at

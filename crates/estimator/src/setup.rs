@@ -168,7 +168,7 @@ impl Setup {
         self.scene.object.gyration_radius()
     }
 
-    /// Draws friction from its prior, by four standard normal numbers (docs/method.md (33)).
+    /// Draws friction from its prior, by four standard normal numbers (docs/model.md (33)).
     pub fn drawn_friction(&self, normals: [f64; 4]) -> Friction {
         let (stds, limits) = (
             self.uncertainty.friction.fields(),

@@ -1,5 +1,5 @@
 //! Uncertainty of a scene file's numbers: [`Uncertainty`], which the robust model allows for
-//! (docs/method.md, "Contact mode").
+//! (docs/model.md).
 
 use stickslip_dynamics::{Friction, Lanes};
 
@@ -94,7 +94,7 @@ impl Uncertainty {
         }
     }
 
-    /// b of docs/method.md (36), the factor of `fixel_position` and, while the camera is off,
+    /// b of docs/model.md (36), the factor of `fixel_position` and, while the camera is off,
     /// `force_std`. The logarithm of the rig's roughness is `roughness`, whose
     /// own factor is not included. b is `well_measured` on the smoother half of rigs, 1 on the
     /// others.

@@ -3,7 +3,7 @@
 //! With the paper's model, particles get new friction values only where the camera sees the object
 //! and Φ keeps them (docs/method.md (20), (21)). At rest the set is resampled without new values,
 //! until all its particles are copies of a few. Its spread then shrinks though nothing has been
-//! learnt. The robust model keeps its last estimate at rest and while the camera is off (52).
+//! learnt. The robust model keeps its last estimate at rest and while the camera is off.
 //!
 //! So the estimate of a parameter is that of the last row that informs about it; without such a row
 //! it is not identified. With the robust model, particles begin with a prior. A parameter whose

@@ -1,5 +1,5 @@
 //! Bridge between the particle filter and the ensemble Kalman filter: [`Bridge`] (Frei & Künsch
-//! 2013, "Bridging the ensemble Kalman and particle filters"); docs/method.md (45), (52).
+//! 2013, "Bridging the ensemble Kalman and particle filters"); docs/model.md (45).
 //!
 //! An observation is split where weighing alone would leave few particles, or where a model asks
 //! for it. One part of it weighs the particles, the rest moves them.

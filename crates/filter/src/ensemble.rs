@@ -1,5 +1,5 @@
 //! Particles that an observation moves: [`Ensemble`], the update of the ensemble Kalman filter with
-//! disturbed measurements (Burgers, van Leeuwen & Evensen 1998; docs/method.md (45)).
+//! disturbed measurements (Burgers, van Leeuwen & Evensen 1998; docs/model.md (45)).
 
 use stickslip_lanes::{Level, on_widest};
 

@@ -54,7 +54,7 @@ pub struct FootRow<const W: usize> {
 }
 
 /// One contact: gap velocity γ = n·v + `gap_offset` + nd y, slip velocity s = t·v + `slip_offset` +
-/// td y. Friction resists s + c p_t (docs/method.md (50)).
+/// td y.
 #[derive(Clone, Copy, Debug)]
 pub struct ContactRow<const W: usize> {
     /// Column W_n.

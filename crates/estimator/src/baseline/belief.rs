@@ -25,7 +25,7 @@ pub(super) type State = SVector<f64, STATES>;
 /// A covariance of states, or a root of one.
 pub(super) type StateMatrix = SMatrix<f64, STATES, STATES>;
 
-/// Log-normal priors of the friction parameters (docs/method.md (33)).
+/// Log-normal priors of the friction parameters (docs/model.md (33)).
 #[derive(Clone, Debug)]
 pub(super) struct FrictionPrior {
     nominal: Friction,
@@ -120,7 +120,7 @@ impl Belief {
     }
 
     /// Makes a random step of the friction parameters that `took_part`, over `steps` steps of 1/30
-    /// s. It keeps their priors (docs/method.md (34)).
+    /// s. It keeps their priors (docs/model.md (34)).
     pub fn drift(&mut self, took_part: &Friction<bool>, steps: f64) {
         let Gaussian { mean, covariance } = &mut self.normal;
         for (k, took_part) in took_part.fields().into_iter().enumerate() {

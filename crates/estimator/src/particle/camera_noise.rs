@@ -11,7 +11,7 @@ use crate::particle::columns::Columns;
 const MOST_SPREADS: f64 = 3.0;
 
 /// Prior of the camera's noise. Its variance, in units of the nominal one, is ν₀ over a χ² number
-/// of ν₀ degrees of freedom (docs/method.md (41)).
+/// of ν₀ degrees of freedom (docs/model.md (41)).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct NoisePrior {
     /// ν₀.

@@ -27,7 +27,7 @@ use crate::particle::sums::Reference;
 use crate::particle::view::ParticleView;
 use crate::setup::{Camera, Setup};
 
-/// Least share of a camera pose that moves particles; the rest weighs them (docs/method.md (45)).
+/// Least share of a camera pose that moves particles; the rest weighs them (docs/model.md (45)).
 const LEAST_MOVED: f64 = 0.9;
 
 /// Measurements of a row.

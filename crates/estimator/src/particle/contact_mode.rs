@@ -1,4 +1,4 @@
-//! Additions of the robust model to a step (docs/method.md, "Contact mode"): every particle has its
+//! Additions of the robust model to a step (docs/model.md): every particle has its
 //! own friction, offsets, feet and latency, and its own view of the tactile sensors.
 
 use stickslip_dynamics::{Body, Friction, Lanes, Mask, Offsets, StepInput, Twist, on_widest};

@@ -1,5 +1,5 @@
-//! Possible place of a pusher that is not seen: [`HiddenPusher`] (robust model; docs/method.md
-//! (53)).
+//! Possible place of a pusher that is not seen: [`HiddenPusher`] (robust model; docs/model.md
+//! (44)).
 
 use stickslip_dynamics::{Placed, Pose, Scene, StepInput, Twist};
 

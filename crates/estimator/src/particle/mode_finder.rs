@@ -1,4 +1,4 @@
-//! Modes of a particle set: [`ModeFinder`], docs/method.md (49).
+//! Modes of a particle set: [`ModeFinder`], docs/model.md (43).
 
 use stickslip_dynamics::Pose;
 use stickslip_filter::ParticleFilter;

@@ -1,4 +1,4 @@
-//! Quantities of a particle that a camera pose may move (robust model; docs/method.md (45)): all
+//! Quantities of a particle that a camera pose may move (robust model; docs/model.md (45)): all
 //! that is continuous and not resampled from its prior.
 
 use stickslip_filter::{BLOCK, Block, BlockMut};

@@ -1,5 +1,5 @@
 //! Unknowns of the rig (robust model): where pusher and fixels stand, and how late the camera is
-//! (docs/method.md (36)).
+//! (docs/model.md (36)).
 
 use stickslip_dynamics::{Lanes, Mask};
 use stickslip_filter::BlockMut;

@@ -1,4 +1,4 @@
-//! Unknowns of how the object stands (robust model; docs/method.md (55)): where its centre of
+//! Unknowns of how the object stands (robust model; docs/model.md (35)): where its centre of
 //! friction lies, and in which directions its three feet.
 
 use stickslip_dynamics::Pose;

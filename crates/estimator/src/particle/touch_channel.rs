@@ -33,7 +33,7 @@ impl<const W: usize> SensorBelief<W> {
 }
 
 /// A sensor that works, or is stuck at one reading for a while. Its state is inferred from its
-/// readings, particle by particle (docs/method.md, "Contact mode").
+/// readings, particle by particle (docs/model.md).
 ///
 /// A sensor that misses a touch now will miss it in the next frame, too: such readings count once,
 /// not frame by frame. So does what is not known of a contact, its gap or whether it presses. The
@@ -202,7 +202,7 @@ pub(crate) fn felt<const W: usize>(impulse: Lanes<W>, gap: Lanes<W>) -> Lanes<W>
 }
 
 /// Returns that probability for a contact that may be idle: no step tells whether one that is near
-/// presses (docs/method.md (38)).
+/// presses (docs/model.md (38)).
 #[inline(always)]
 pub(crate) fn felt_or_idle<const W: usize>(
     impulse: Lanes<W>,

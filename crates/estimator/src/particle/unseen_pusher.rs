@@ -1,4 +1,4 @@
-//! Motion of the object by a pusher that is not seen (docs/method.md (53)).
+//! Motion of the object by a pusher that is not seen (docs/model.md (44)).
 
 use stickslip_dynamics::{Particles, Twist};
 use stickslip_filter::{BlockMut, Draw};

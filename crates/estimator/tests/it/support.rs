@@ -1,4 +1,4 @@
-//! Feet of each particle in the robust model (docs/method.md (55)): resampled from the prior while
+//! Feet of each particle in the robust model (docs/model.md (35)): resampled from the prior while
 //! the object rests, kept once it moves.
 
 use std::sync::Mutex;
