@@ -122,7 +122,9 @@ impl Back<'_> {
     }
 }
 
-/// Sorts messages by the order of their files in time, and in these as they are recorded.
+/// Sorts messages by the order of their files in time, and in these as they are recorded. Where more
+/// than a quarter of them are recorded before earlier ones, a program has written them in an order
+/// of its own: their log times then say how they arrived.
 fn by_arrival(messages: &mut [(&RawMessage, i64)]) {
     let mut begins: BTreeMap<u32, u64> = BTreeMap::new();
     for (raw, _) in messages.iter() {
@@ -130,4 +132,9 @@ fn by_arrival(messages: &mut [(&RawMessage, i64)]) {
         *begin = raw.log_time.min(*begin);
     }
     messages.sort_by_key(|(raw, _)| (begins[&raw.file], raw.file));
+    let pairs = messages.array_windows();
+    let back = pairs.filter(|[(a, _), (b, _)]| b.log_time < a.log_time);
+    if 4 * back.count() > messages.len() {
+        messages.sort_by_key(|(raw, _)| raw.log_time);
+    }
 }
