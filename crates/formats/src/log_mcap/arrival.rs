@@ -122,9 +122,10 @@ impl Back<'_> {
     }
 }
 
-/// Sorts messages by the order of their files in time, and in these as they are recorded. Where more
-/// than a quarter of them are recorded before earlier ones, a program has written them in an order
-/// of its own: their log times then say how they arrived.
+/// Sorts messages by the order of their files in time, and in these as they are recorded.
+///
+/// A program may write them in an order of its own: more than a quarter then follow later ones, and
+/// their log times say how they arrived.
 fn by_arrival(messages: &mut [(&RawMessage, i64)]) {
     let mut begins: BTreeMap<u32, u64> = BTreeMap::new();
     for (raw, _) in messages.iter() {
