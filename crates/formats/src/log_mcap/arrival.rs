@@ -12,10 +12,10 @@ use crate::log_mcap::series::seconds_text;
 const FAR: i64 = SECOND / 2;
 /// A step back by more than this is that of a clock if messages go on from there (ns).
 const NEAR: i64 = SECOND / 50;
-/// A day (ns).
-const DAY: i64 = 86_400 * SECOND;
 /// Number of messages that then go on behind a later one.
 const GO_ON: usize = 4;
+/// A day (ns).
+const DAY: i64 = 86_400 * SECOND;
 
 /// Clock by which messages are timed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
