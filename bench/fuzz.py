@@ -26,6 +26,7 @@ import tempfile
 import threading
 from collections import Counter, defaultdict
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 from pathlib import Path
 
 CPU, MEMORY = 20, 500  # s, MB
@@ -73,6 +74,7 @@ def body(rng, a):
 
 def scene(rng):
     """The text of scene.toml, and the physics that accept its drive."""
+
     def log(low, high):
         return math.exp(rng.uniform(math.log(low), math.log(high)))
 
@@ -139,12 +141,17 @@ def damaged(rng, data, binary):
     return bytes(data)
 
 
+def kill(pid):
+    with suppress(ProcessLookupError):
+        os.kill(pid, 9)
+
+
 def run(kind, folder, words, rows=os.devnull, failure=None):
     """Runs the program in a folder and counts the outcome; whether it answered."""
     with open(folder / "out", "wb") as out, open(folder / "err", "wb") as err, open(folder / rows, "rb") as stdin:
         child = subprocess.Popen([options.program, *words.split()], stdin=stdin, stdout=out, stderr=err, cwd=folder)
     resource.prlimit(child.pid, resource.RLIMIT_CPU, (CPU, CPU + 5))
-    timer = threading.Timer(20 * CPU, os.kill, (child.pid, 9))
+    timer = threading.Timer(20 * CPU, kill, (child.pid,))
     timer.start()
     _, status, usage = os.wait4(child.pid, 0)
     timer.cancel()

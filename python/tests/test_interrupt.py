@@ -12,7 +12,8 @@ import pytest
 import stickslip
 
 BEGIN = """
-import sys, numpy as np, stickslip
+import signal, sys, numpy as np, stickslip
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a job in the background ignores it
 folder = sys.argv[1]
 scene = stickslip.load_scene(folder + "/scene.toml")
 progress = lambda done, total: print("begun", flush=True)
@@ -53,7 +54,10 @@ def test_interrupted_call_ends_as_a_keyboard_interrupt(demo, call):
 @pytest.mark.parametrize("call", ["load_log", "info"])
 def test_interrupted_reader_of_a_file_that_does_not_come_ends(tmp_path, call):
     os.mkfifo(tmp_path / "push.mcap")
-    script = f"import sys, stickslip\nprint('begun', flush=True)\nstickslip.{call}(sys.argv[1])"
+    script = f"""import signal, sys, stickslip
+signal.signal(signal.SIGINT, signal.default_int_handler)
+print('begun', flush=True)
+stickslip.{call}(sys.argv[1])"""
     command = [sys.executable, "-c", script, tmp_path / "push.mcap"]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     assert process.stdout.readline() == "begun\n"

@@ -6,6 +6,7 @@ import subprocess
 import sys
 import sysconfig
 import time
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -77,7 +78,9 @@ def test_the_package_has_the_licences_of_what_is_compiled_in(installed):
 @pytest.mark.skipif(sys.platform == "win32", reason="no such signals")
 def test_an_interrupted_command_ends_at_once_as_the_program_does(installed, demo):
     words = ["filter", "log.csv", "--scene", "scene.toml", "--particles", "1000000", "--seed", "1"]
-    process = subprocess.Popen([installed, *words], cwd=demo, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    heard = partial(signal.signal, signal.SIGINT, signal.SIG_DFL)  # a job in the background ignores it
+    pipe = subprocess.PIPE
+    process = subprocess.Popen([installed, *words], cwd=demo, stdout=pipe, stderr=pipe, preexec_fn=heard)
     time.sleep(1.5)
     process.send_signal(signal.SIGINT)
     assert process.wait(timeout=60) == -signal.SIGINT

@@ -53,9 +53,10 @@ impl ReportedExperiment<'_> {
             Some(_) => ". Band: standard deviation of the particle filter",
             None => "",
         };
+        let error_curves = self.errors();
         let errors = Figure::new(
             "errors",
-            self.errors().drawing(),
+            error_curves.drawing(),
             &format!("Errors against time; smaller ones are drawn at {FLOOR}{shaded}."),
         );
         let poses = Figure::new(
@@ -98,7 +99,7 @@ impl ReportedExperiment<'_> {
         if !part.is_empty() {
             let whole = TimeFigure {
                 span: self.whole_span(),
-                ..self.errors()
+                ..error_curves
             };
             let text = "Errors against time over the whole log.";
             figures.insert(0, Figure::new("errors-whole", whole.drawing(), text));

@@ -52,7 +52,8 @@ impl FolderSet {
         };
         let mut sets: Vec<Vec<usize>> = Variant::COMPARED.into_iter().map(ran).collect();
         sets.retain(|set| !set.is_empty());
-        sets.sort_by_key(|set| std::cmp::Reverse(set.len()));
+        // equal sets side by side, so that each is there once
+        sets.sort_by(|a, b| b.len().cmp(&a.len()).then(a.cmp(b)));
         sets.dedup();
         let set = |set: Vec<usize>| {
             let folders: Vec<&FolderResult> = set.into_iter().map(|k| &folders[k]).collect();

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::common::{empty_folder, json, stickslip, succeeds};
+use crate::common::{Experiment, empty_folder, json, stickslip, succeeds};
 
 /// A plate on three feet that a finger pushes on; the pusher's friction is 0.3 to the scene.
 fn scene(place: f64, turn: f64) -> String {
@@ -158,25 +158,21 @@ fn fit_refuses_with_the_next_step() {
     assert!(!out.exists(), "a fit that was refused leaves nothing");
 }
 
+/// The push that a test spoils.
+fn push_1(folder: &Path) -> Experiment {
+    Experiment {
+        folder: folder.join("pushes/push-1"),
+    }
+}
+
 #[test]
 fn push_that_touches_nothing_is_no_push() {
     let folder = pushes("fit/untouched", 2);
-    let log = folder.join("pushes/push-1/log.csv");
-    let text = fs::read_to_string(&log).unwrap();
     // as long as the object rests, the pusher 5 cm away
-    let away = |line: &str| {
-        let cell = |(k, cell): (usize, &str)| match cell.parse::<f64>() {
-            Ok(number) if k == 5 => (number - 0.05).to_string(),
-            _ => cell.to_owned(),
-        };
-        line.split(',')
-            .enumerate()
-            .map(cell)
-            .collect::<Vec<_>>()
-            .join(",")
-    };
-    let early: Vec<String> = text.lines().take(6).map(away).collect();
-    fs::write(&log, early.join("\n") + "\n").unwrap();
+    push_1(&folder).edit_rows(|rows| {
+        rows.truncate(5);
+        rows.iter_mut().for_each(|row| row[5] -= 0.05);
+    });
     let run = fit(&folder.join("pushes"), &folder.join("out"))
         .output()
         .unwrap();
@@ -191,21 +187,11 @@ fn push_that_touches_nothing_is_no_push() {
 #[test]
 fn push_that_filter_refuses_is_refused_unless_forced() {
     let folder = pushes("fit/millimetres", 2);
-    let log = folder.join("pushes/push-1/log.csv");
-    let text = fs::read_to_string(&log).unwrap();
-    let scaled = |line: &str| {
-        let cell = |(k, cell): (usize, &str)| match cell.parse::<f64>() {
-            Ok(number) if [1, 2, 4, 5].contains(&k) => (1e3 * number).to_string(),
-            _ => cell.to_owned(),
-        };
-        line.split(',')
-            .enumerate()
-            .map(cell)
-            .collect::<Vec<_>>()
-            .join(",")
-    };
-    let lines: Vec<String> = text.lines().map(scaled).collect();
-    fs::write(&log, lines.join("\n") + "\n").unwrap();
+    push_1(&folder).edit_rows(|rows| {
+        for row in rows {
+            [1, 2, 4, 5].into_iter().for_each(|k| row[k] *= 1e3);
+        }
+    });
     let run = fit(&folder.join("pushes"), &folder.join("out"))
         .output()
         .unwrap();

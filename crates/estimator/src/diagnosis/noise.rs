@@ -18,6 +18,9 @@ const MADE_UP: f64 = 30.0;
 /// Factor of overconfidence from which on errors that last are worth a warning.
 const TOO_SURE: f64 = 1.5;
 
+/// Source of stated noise.
+const SCENE: &str = "scene.toml";
+
 /// Noise that needs no statement: that of encoders and rounding.
 const NEGLIGIBLE: PoseNoise = PoseNoise {
     position: 2e-5,
@@ -64,12 +67,12 @@ pub(super) fn pusher(evidence: &Evidence<'_>) -> Option<Finding> {
         .filter(|noise| is_above(noise, &stated, PUSHER_OFF, &NEGLIGIBLE))?;
     let advice = "set pusher_position_std and pusher_orientation_std under [camera] to the measured values; offline runs use the \
                   measured noise, but `live` and --causal take the scatter for motion, which jerks the object at every row";
-    let found = told("pusher", &noise, &stated);
+    let found = told("pusher", &noise, (SCENE, &stated));
     Some(Finding::warning(Subject::Noise, found, advice))
 }
 
 fn compared(noise: &PoseNoise, stated: &PoseNoise, size: f64) -> Finding {
-    let found = told("object", noise, stated);
+    let found = told("object", noise, (SCENE, stated));
     if let Some(unit) = in_other_units(noise, stated, size) {
         let advice =
             "give position_std in m and orientation_std in rad under [camera], as measured";
@@ -106,13 +109,7 @@ fn of_covariances(evidence: &Evidence<'_>) -> Option<PoseNoise> {
 
 /// Compares the measured noise with that of the poses' own covariances, by which they count.
 fn covered(noise: &PoseNoise, stated: &PoseNoise) -> Finding {
-    let found = format!(
-        "noise of object poses {:.2} mm and {:.4} rad; their covariances: {:.2} mm and {:.4} rad",
-        1e3 * noise.position,
-        noise.angle,
-        1e3 * stated.position,
-        stated.angle
-    );
+    let found = told("object", noise, ("their covariances", stated));
     let advice = "give the covariances of the poses in m and rad as measured, or zeros where they are not known: [camera] then counts";
     let least = NEGLIGIBLE;
     let ratio = |of: fn(&PoseNoise) -> f64| of(stated).max(of(&least)) / of(noise).max(of(&least));
@@ -166,9 +163,10 @@ fn is_above(measured: &PoseNoise, stated: &PoseNoise, ratio: f64, negligible: &P
     is(|noise| noise.position) || is(|noise| noise.angle)
 }
 
-fn told(body: &str, noise: &PoseNoise, stated: &PoseNoise) -> String {
+/// The measured noise of a body's poses, and the stated one with its source.
+fn told(body: &str, noise: &PoseNoise, (source, stated): (&str, &PoseNoise)) -> String {
     format!(
-        "noise of {body} poses {:.2} mm and {:.4} rad; scene.toml: {:.2} mm and {:.4} rad",
+        "noise of {body} poses {:.2} mm and {:.4} rad; {source}: {:.2} mm and {:.4} rad",
         1e3 * noise.position,
         noise.angle,
         1e3 * stated.position,

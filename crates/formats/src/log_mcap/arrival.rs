@@ -12,10 +12,10 @@ use crate::log_mcap::series::seconds_text;
 const FAR: i64 = SECOND / 2;
 /// A step back by more than this is that of a clock if messages go on from there (ns).
 const NEAR: i64 = SECOND / 50;
-/// A day (ns).
-const DAY: i64 = 86_400 * SECOND;
 /// Number of messages that then go on behind a later one.
 const GO_ON: usize = 4;
+/// A day (ns).
+const DAY: i64 = 86_400 * SECOND;
 
 /// Clock by which messages are timed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -123,6 +123,9 @@ impl Back<'_> {
 }
 
 /// Sorts messages by the order of their files in time, and in these as they are recorded.
+///
+/// A program may write them in an order of its own: more than a quarter then follow later ones, and
+/// their log times say how they arrived.
 fn by_arrival(messages: &mut [(&RawMessage, i64)]) {
     let mut begins: BTreeMap<u32, u64> = BTreeMap::new();
     for (raw, _) in messages.iter() {
@@ -130,4 +133,9 @@ fn by_arrival(messages: &mut [(&RawMessage, i64)]) {
         *begin = raw.log_time.min(*begin);
     }
     messages.sort_by_key(|(raw, _)| (begins[&raw.file], raw.file));
+    let pairs = messages.array_windows();
+    let back = pairs.filter(|[(a, _), (b, _)]| b.log_time < a.log_time);
+    if 4 * back.count() > messages.len() {
+        messages.sort_by_key(|(raw, _)| raw.log_time);
+    }
 }

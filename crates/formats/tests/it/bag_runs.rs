@@ -360,3 +360,14 @@ fn frame_with_a_leading_slash_is_the_frame_without() {
         .collect();
     assert_eq!(read(&file(&lines)).0.object.len(), 10);
 }
+
+/// A program may write the latest message first; readers go by the log times.
+#[test]
+fn messages_written_in_another_order_are_read_by_their_log_times() {
+    let mut lines = run(30, 5000 * MS, 5000 * MS);
+    let (log, _) = read(&file(&lines));
+    lines.reverse();
+    let (reversed, warnings) = read(&file(&lines));
+    assert_eq!(log, reversed);
+    assert!(warnings.is_empty(), "{warnings:?}");
+}

@@ -160,12 +160,7 @@ fn angle_is_that_about_the_vertical_and_unwrapped() {
     // in the file in another order than in time
     lines.reverse();
     let (log, warnings) = read(&file(&lines));
-    assert!(
-        warnings[0]
-            .to_string()
-            .contains("4 messages were recorded after later ones, by up to 400.0 ms"),
-        "{warnings:?}"
-    );
+    assert!(warnings.is_empty(), "{warnings:?}");
     for (k, pose) in log.object.iter().enumerate() {
         assert!(
             (pose.unwrap().theta - k as f64 * PI / 2.0).abs() < 1e-12,
