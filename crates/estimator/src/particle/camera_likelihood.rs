@@ -9,6 +9,7 @@ use crate::particle::camera_noise::{CameraNoise, NoisePrior};
 use crate::particle::chunk::{Column, load_chunk, load_pose};
 use crate::particle::columns::Columns;
 use crate::particle::observation::Observation;
+use crate::particle::unknown::Name;
 use crate::setup::{Camera, Setup};
 use crate::uncertainty::Uncertainty;
 
@@ -274,7 +275,7 @@ impl Latency {
     /// Returns the lag of one chunk's particles (s).
     #[inline(always)]
     fn of(&self, columns: Columns, block: &Block<'_>, chunk: usize) -> Column {
-        let rest = load_chunk(block.column(columns.latency()), chunk, 0.0);
+        let rest = load_chunk(block.column(columns.unknown(Name::Latency, 0)), chunk, 0.0);
         self.uncertainty.latency_at(rest) + Lanes::splat(self.told)
     }
 }

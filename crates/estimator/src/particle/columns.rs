@@ -2,6 +2,7 @@
 
 use crate::filter_model::FilterModel;
 use crate::particle::touch_channel::BELIEF_LEN;
+use crate::particle::unknown::{Name, UNKNOWNS};
 
 /// Columns of a warm start.
 const WARM: usize = stickslip_dynamics::WarmStart::LEN;
@@ -15,11 +16,15 @@ const SINGLE: usize = 11;
 /// Flags of each fixel.
 const FLAGS_PER_FIXEL: usize = 5;
 
-/// Columns of the robust model that do not belong to a fixel.
-const UNKNOWNS: usize = 12;
+/// Columns of the robust model that are no unknowns of [`UNKNOWNS`]: the log-likelihood and the
+/// camera's noise.
+const OTHERS: usize = 4;
 
-/// Columns of the robust model for each fixel.
-const PER_FIXEL: usize = BELIEF_LEN + 2;
+/// Columns of the robust model for each fixel: the belief about its sensor and its offset.
+const PER_FIXEL: usize = BELIEF_LEN + OFFSET_LEN;
+
+/// Columns of a fixel's offset.
+const OFFSET_LEN: usize = 2;
 
 /// A condition of every particle: one bit of a column that holds only such bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -146,58 +151,40 @@ impl Columns {
         Self::FLAGS + (SINGLE + FLAGS_PER_FIXEL * self.fixels).div_ceil(BITS)
     }
 
-    /// Offset of the pusher's logged poses, in standard deviations: x, y (robust model).
-    pub fn pusher_offset(&self) -> usize {
-        self.unknowns()
-    }
-
     /// log-likelihood of the pusher's place and the tactile readings of the latest row, without the
     /// camera (robust model).
     pub fn felt_log_likelihood(&self) -> usize {
-        self.unknowns() + 2
-    }
-
-    /// ln of the rig's roughness, a factor of all offsets, in standard deviations (robust model).
-    pub fn roughness(&self) -> usize {
-        self.unknowns() + 3
-    }
-
-    /// ln of the camera's unknown latency over its median, in standard deviations (robust model).
-    pub fn latency(&self) -> usize {
-        self.unknowns() + 4
+        self.unknowns()
     }
 
     /// Three columns of [`CameraNoise`](crate::particle::camera_noise::CameraNoise) (robust model).
     pub fn camera_noise(&self) -> usize {
-        self.unknowns() + 5
-    }
-
-    /// Turn of the pusher relative to its logged poses, in standard deviations (robust model).
-    pub fn pusher_turn(&self) -> usize {
-        self.unknowns() + 8
-    }
-
-    /// Displacement and turn of the feet relative to the scene's, in standard deviations: x, y,
-    /// angle (robust model).
-    pub fn support(&self) -> usize {
-        self.unknowns() + 9
+        self.unknowns() + 1
     }
 
     /// Belief about sensor `fixel`, the numbers of a
     /// [`SensorBelief`](super::touch_channel::SensorBelief) (robust model).
     pub fn sensor(&self, fixel: usize) -> usize {
-        self.unknowns() + UNKNOWNS + PER_FIXEL * fixel
+        self.unknowns() + OTHERS + BELIEF_LEN * fixel
     }
 
-    /// Offset of fixel `fixel` from its pose, in standard deviations: x, y (robust model).
-    pub fn fixel_offset(&self, fixel: usize) -> usize {
-        self.sensor(fixel) + BELIEF_LEN
+    /// First column of an unknown; of one that every fixel has, that of `fixel` (robust model).
+    pub(super) fn unknown(&self, name: Name, fixel: usize) -> usize {
+        let before = UNKNOWNS.iter().take_while(|unknown| unknown.name != name);
+        let before: usize = before.map(|unknown| unknown.numbers).sum();
+        self.sensor(self.fixels) + before + OFFSET_LEN * fixel
     }
 
     /// x of the past pose in ring slot `slot`; y and θ follow.
     pub fn past_pose(&self, slot: usize) -> usize {
         let unknowns = match self.model {
-            FilterModel::Robust => UNKNOWNS + PER_FIXEL * self.fixels,
+            FilterModel::Robust => {
+                let of_rig = UNKNOWNS
+                    .iter()
+                    .map(|unknown| unknown.numbers)
+                    .sum::<usize>();
+                OTHERS + of_rig - OFFSET_LEN + PER_FIXEL * self.fixels
+            }
             FilterModel::Paper => 0,
         };
         self.unknowns() + unknowns + 3 * slot
@@ -217,6 +204,7 @@ impl Columns {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::particle::unknown;
     use std::collections::HashSet;
 
     const FIXELS: usize = 50;
@@ -252,18 +240,11 @@ mod tests {
             (Columns::FRICTION, 4),
             (Columns::PUSHER_LAG, 2),
             (Columns::WARM_START, WARM),
-            (columns.pusher_offset(), 2),
             (columns.felt_log_likelihood(), 1),
-            (columns.roughness(), 1),
-            (columns.latency(), 1),
             (columns.camera_noise(), 3),
-            (columns.pusher_turn(), 1),
-            (columns.support(), 3),
         ];
-        for j in 0..FIXELS {
-            numbers.push((columns.sensor(j), BELIEF_LEN));
-            numbers.push((columns.fixel_offset(j), 2));
-        }
+        numbers.extend((0..FIXELS).map(|j| (columns.sensor(j), BELIEF_LEN)));
+        numbers.extend(unknown::numbers(*columns).map(|number| (number.column, 1)));
         numbers.extend((0..columns.history()).map(|slot| (columns.past_pose(slot), 3)));
         numbers
     }

@@ -16,12 +16,11 @@ use crate::setup::Limits;
 use crate::uncertainty::JITTER;
 
 /// Numbers of the draws of unknowns: they follow those of all substeps.
-const OFFSET_PAIR: u32 = 1 << 20;
-pub(super) const UNSEEN_PAIR: u32 = OFFSET_PAIR + 2;
-const TURN_PAIR: u32 = UNSEEN_PAIR + 2;
-const SUPPORT_PAIR: u32 = TURN_PAIR + 2;
-const REST_PAIR: u32 = SUPPORT_PAIR + 2;
-const FIXEL_PAIR: u32 = REST_PAIR + 2;
+pub(super) const UNSEEN_PAIR: u32 = 1 << 20;
+const REST_PAIR: u32 = UNSEEN_PAIR + 2;
+
+/// Time within which the estimate follows an object that is moved by hand (s).
+const FOLLOWED: f64 = 1.0;
 
 /// Gap up to which bodies count as touching in the estimate (m).
 const TOUCHING: f64 = 1e-4;
@@ -62,7 +61,7 @@ impl Propagation {
         // drawn in every row of a fast pusher, its offset would be the largest of many when it
         // comes near
         if plan.noise_age == 0 {
-            self.draw_rig(transition, plan, draw, block);
+            self.step_unknowns(transition, plan, draw, block);
         }
         on_widest(
             self.level,
@@ -74,44 +73,6 @@ impl Propagation {
         );
         for (before, particles) in self.lag_before.iter_mut().zip(&self.particles) {
             *before = squared(particles.pusher_lag);
-        }
-    }
-
-    /// Draws the unknowns of the rig.
-    fn draw_rig(
-        &mut self,
-        transition: &Transition<'_>,
-        plan: &StepPlan,
-        draw: Draw,
-        block: &mut BlockMut<'_>,
-    ) {
-        for j in 0..transition.columns.fixels() {
-            on_widest(
-                self.level,
-                #[inline(always)]
-                || {
-                    self.draw_first_normals(draw, FIXEL_PAIR + 2 * j as u32, block);
-                    self.draw_fixel_offset(transition, plan, j, block);
-                },
-            );
-        }
-        self.normals_of(draw, OFFSET_PAIR, block);
-        on_widest(
-            self.level,
-            #[inline(always)]
-            || self.draw_offsets(transition, plan, block),
-        );
-        if transition.setup.pusher_turn() > 0.0 {
-            self.normals_of(draw, TURN_PAIR, block);
-            self.draw_pusher_turn(transition, plan, block);
-        }
-        if transition.setup.support_is_uncertain() {
-            self.normals_of(draw, SUPPORT_PAIR, block);
-            on_widest(
-                self.level,
-                #[inline(always)]
-                || self.draw_support(transition, plan, block),
-            );
         }
     }
 
@@ -144,11 +105,12 @@ impl Propagation {
         }
     }
 
-    /// Moves objects that nothing has come near yet by a random step, a share of the camera's noise
-    /// as that of the other unknowns: who last moved them may do so again.
+    /// Moves objects that nothing has come near yet by a random step. Where the camera shows that one
+    /// was moved by hand, the estimate then follows within [`FOLLOWED`]: the gain of a Kalman filter
+    /// is the ratio of such a step to the camera's noise.
     #[inline(always)]
     fn nudge(&mut self, transition: &Transition<'_>, plan: &StepPlan, block: &BlockMut<'_>) {
-        let share = JITTER * (plan.duration() / NOISE_STEP).sqrt();
+        let share = NOISE_STEP / FOLLOWED * (plan.duration() / NOISE_STEP).sqrt();
         let Some(camera) = transition.setup.camera else {
             return;
         };
@@ -177,7 +139,7 @@ impl Propagation {
         block: &BlockMut<'_>,
     ) {
         let h = plan.duration();
-        let step = match plan.unknowns_wander() {
+        let step = match plan.driven {
             true => (JITTER * (h / NOISE_STEP).sqrt()).min(1.0),
             false => 0.0,
         };
@@ -280,6 +242,7 @@ impl Propagation {
         for j in 0..columns.fixels() {
             // a row without readings of a sensor is silent on it
             let reading = plan.tactile.get(j).copied().flatten();
+            let most = reading.map_or(0.0, |reading| libm::log(channel.most_likely(reading)));
             for chunk in 0..block.len().div_ceil(LANES) {
                 let mut belief = channel.start();
                 load_columns(block, columns.sensor(j), chunk, belief.fields_mut());
@@ -293,6 +256,7 @@ impl Propagation {
                 let idle = flag(&block.as_block(), Columns::IDLE, chunk);
                 let touch = felt_or_idle(impulse, gap, idle);
                 let (after, log_likelihood) = channel.read(belief, touch, reading);
+                let log_likelihood = log_likelihood - Lanes::splat(most);
                 store_columns(block, columns.sensor(j), chunk, after.fields());
                 let column = columns.felt_log_likelihood();
                 let so_far = load_chunk(block.column(column), chunk, 0.0);

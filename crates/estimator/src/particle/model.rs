@@ -17,17 +17,12 @@ use crate::particle::step_plan::StepPlan;
 use crate::particle::sums::Sums;
 use crate::particle::tactile_likelihood::TactileLikelihood;
 use crate::particle::touch_channel::TouchChannel;
+use crate::particle::unknown;
 use crate::setup::{Camera, Setup};
 
 /// Best log-likelihood below which no particle explains the observation. The particles are then
 /// reinitialised around it (docs/method.md (27)).
 const COLLAPSED: f64 = -6.0;
-
-/// Number of a particle's first draw of the turn of the pusher: behind those for all fixels.
-const TURN_NUMBER: u32 = 1 << 20;
-
-/// Number of a particle's first draw of where its feet stand.
-const SUPPORT_NUMBER: u32 = TURN_NUMBER + 2;
 
 /// The model of one setup, started at one pose.
 ///
@@ -159,20 +154,9 @@ impl<'o> ContactModel<'o> {
     /// Draws the unknowns of the robust model from their priors.
     fn draw_unknowns(&self, draw: Draw, particle: u32, block: &mut BlockMut<'_>, i: usize) {
         let Transition { setup, columns, .. } = &self.transition;
-        let normals = draw.normals::<8>(particle, 4);
-        let friction = setup.drawn_friction([0, 1, 2, 3].map(|k| normals[k]));
+        let friction = setup.drawn_friction(draw.normals::<4>(particle, 4));
         write(block, Columns::FRICTION, i, friction.fields());
-        write(
-            block,
-            columns.pusher_offset(),
-            i,
-            [&normals[4], &normals[5]],
-        );
-        block.column_mut(columns.roughness())[i] = normals[6];
-        block.column_mut(columns.latency())[i] = normals[7];
-        block.column_mut(columns.pusher_turn())[i] = draw.normal(particle, TURN_NUMBER);
-        let support = draw.normals::<3>(particle, SUPPORT_NUMBER);
-        write(block, columns.support(), i, support.each_ref());
+        unknown::draw(*columns, (draw, particle), block, i);
         for k in 0..3 {
             block.column_mut(columns.camera_noise() + k)[i] = 0.0;
         }
@@ -180,8 +164,6 @@ impl<'o> ContactModel<'o> {
         let sensor = sensor.fields().map(|number| number.0[0]);
         for j in 0..columns.fixels() {
             write(block, columns.sensor(j), i, sensor.each_ref());
-            let offset = draw.normals::<2>(particle, 18 + 2 * j as u32);
-            write(block, columns.fixel_offset(j), i, [&offset[0], &offset[1]]);
         }
     }
 }

@@ -4,6 +4,7 @@
 use stickslip_filter::{BLOCK, Block, BlockMut};
 
 use crate::particle::columns::Columns;
+use crate::particle::unknown;
 
 /// Scale on which a column's numbers are about normal.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,15 +24,10 @@ const MOST: f64 = 10.0;
 fn moved(columns: Columns) -> impl Iterator<Item = (usize, Scale)> {
     let past = (0..columns.history()).map(move |slot| columns.past_pose(slot));
     let poses = std::iter::once(Columns::POSE).chain(past);
-    let offset = columns.pusher_offset();
-    let rig = [offset, offset + 1, columns.pusher_turn(), columns.latency()];
-    let support = columns.support()..columns.support() + 3;
-    let fixels = (0..columns.fixels()).map(move |j| columns.fixel_offset(j));
+    let unknowns = unknown::numbers(columns).filter(|number| number.of.moved);
     let linear = poses
         .flat_map(|first| first..first + 3)
-        .chain(rig)
-        .chain(support)
-        .chain(fixels.flat_map(|first| first..first + 2));
+        .chain(unknowns.map(|number| number.column));
     linear
         .map(|column| (column, Scale::Linear))
         .chain((0..4).map(|k| (Columns::FRICTION + k, Scale::Logarithm)))

@@ -81,6 +81,7 @@ impl Replay {
         if let WeightUpdate::Weighed { log_evidence } = report.weight_update {
             self.pool.log_evidence += log_evidence;
         }
+        self.limit = self.limit.max(self.pool.log_evidence - WORSE);
         if self.pool.log_evidence >= self.limit || self.attempts == ATTEMPTS {
             return None;
         }

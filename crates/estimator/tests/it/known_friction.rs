@@ -1,4 +1,4 @@
-//! Friction of an estimate, which particles of their own learn (docs/method.md (52)).
+//! Friction of an estimate.
 
 use crate::common::{log, setup};
 use stickslip::dynamics::{Friction, Pose};
@@ -33,23 +33,6 @@ fn known(row: &EstimateRow) -> (Friction, Friction) {
 }
 
 #[test]
-fn in_the_dark_friction_stays_as_the_camera_left_it() {
-    let (setup, log) = (setup(&[]), pushed());
-    let dark = Occlusion::Rows {
-        from: 50,
-        to: Some(80),
-    };
-    let dark = rows(&setup, &log, dark, FilterModel::Robust);
-    let light = rows(&setup, &log, Occlusion::None, FilterModel::Robust);
-    assert_eq!(known(&dark[49]), known(&light[49]));
-    for (row, estimate) in dark.iter().enumerate().take(80).skip(50) {
-        assert_eq!(known(estimate), known(&dark[49]), "row {row}");
-    }
-    // the camera is back
-    assert_ne!(known(&dark[85]), known(&dark[49]));
-}
-
-#[test]
 fn the_last_blackout_changes_nothing_that_was_known_before() {
     // after the last pose nothing is learned, and nothing else depends on that
     let (setup, log) = (setup(&[]), pushed());
@@ -64,31 +47,6 @@ fn the_last_blackout_changes_nothing_that_was_known_before() {
     for row in 50..119 {
         assert_eq!(ends[row].pose, returns[row].pose, "row {row}");
         assert_eq!(known(&ends[row]), known(&returns[row]), "row {row}");
-    }
-}
-
-#[test]
-fn nothing_is_learned_while_the_object_rests() {
-    // the pusher stops at 3 s, and the camera stays on
-    let at = |time: f64| 0.02 * (time.min(3.0) - 1.0);
-    let log = log(
-        200,
-        // no pose is that of the row before
-        |time| {
-            Some(Pose::new(
-                at(time).max(0.0) + 1e-5 * libm::sin(40.0 * time),
-                0.0,
-                0.0,
-            ))
-        },
-        |time| Some(Pose::new(-0.034 + at(time), 0.006, 0.0)),
-    );
-    let rows = rows(&setup(&[]), &log, Occlusion::None, FilterModel::Robust);
-    let row_at = |time: f64| log.time.iter().position(|row| *row > time).expect("a row");
-    assert_ne!(known(&rows[row_at(2.0)]), known(&rows[row_at(2.5)]));
-    let rests = row_at(3.5);
-    for (row, estimate) in rows.iter().enumerate().skip(rests) {
-        assert_eq!(known(estimate), known(&rows[rests]), "row {row}");
     }
 }
 

@@ -1,0 +1,189 @@
+//! Unknowns of the robust model besides friction: [`UNKNOWNS`], their one table (docs/model.md,
+//! "Unknowns"). Three loops go over it: the first draw, the step of each row, and the ensemble
+//! update, in [`moved`](super::moved). The units of their numbers are in [`rig`](super::rig).
+
+use stickslip_dynamics::on_widest;
+use stickslip_filter::{BlockMut, Draw};
+
+use crate::particle::chunk::{LANES, flag, load_chunk, store_chunk};
+use crate::particle::columns::{Columns, Flag};
+use crate::particle::propagation::{Propagation, Transition};
+use crate::particle::step_plan::StepPlan;
+use crate::setup::Setup;
+use crate::uncertainty::JITTER;
+
+/// An unknown of every particle: neighbouring columns, whose numbers have the standard normal
+/// distribution as prior.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Unknown {
+    /// Its name.
+    pub name: Name,
+    /// Number of its columns, or of those of each fixel.
+    pub numbers: usize,
+    /// Event from which on measurements depend on it. Before, it is resampled from its prior.
+    pub identified_by: Event,
+    /// True if camera poses move it, (45).
+    pub moved: bool,
+}
+
+/// Name of an unknown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Name {
+    /// Offset of the pusher from its logged poses: x, y (`pusher_offset`).
+    PusherOffset,
+    /// Turn of the pusher from its logged angle (`camera.pusher_orientation_std`).
+    PusherTurn,
+    /// ln of the scale of the rig (`roughness`).
+    Roughness,
+    /// ln of the camera's latency (`latency`).
+    Latency,
+    /// Displacement and turn of the feet: x, y, angle (`centre_of_friction`, `tripod_angle`).
+    Feet,
+    /// Offset of a fixel from its position: x, y (`fixel_position`).
+    FixelOffset,
+}
+
+/// Event that makes measurements depend on an unknown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Event {
+    /// The pusher comes near the object.
+    PusherNear,
+    /// The fixel that the unknown belongs to comes near.
+    FixelNear,
+    /// The object moves.
+    Motion,
+}
+
+/// The unknowns, in the order of their columns. The fixels' come last, fixel by fixel.
+pub(crate) const UNKNOWNS: [Unknown; 6] = [
+    unknown(Name::PusherOffset, 2, Event::PusherNear, true),
+    unknown(Name::PusherTurn, 1, Event::PusherNear, true),
+    unknown(Name::Roughness, 1, Event::PusherNear, false),
+    unknown(Name::Latency, 1, Event::PusherNear, true),
+    unknown(Name::Feet, 3, Event::Motion, true),
+    unknown(Name::FixelOffset, 2, Event::FixelNear, true),
+];
+
+const fn unknown(name: Name, numbers: usize, identified_by: Event, moved: bool) -> Unknown {
+    Unknown {
+        name,
+        numbers,
+        identified_by,
+        moved,
+    }
+}
+
+/// One number of an unknown.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Number {
+    /// Its column.
+    pub column: usize,
+    /// Flag of the event that identifies it.
+    pub identified: Flag,
+    /// The unknown.
+    pub of: Unknown,
+}
+
+/// Numbers of all unknowns.
+pub(crate) fn numbers(columns: Columns) -> impl Iterator<Item = Number> {
+    UNKNOWNS.into_iter().flat_map(move |of| {
+        let copies = match of.identified_by {
+            Event::FixelNear => columns.fixels(),
+            Event::PusherNear | Event::Motion => 1,
+        };
+        (0..copies).flat_map(move |fixel| {
+            let identified = match of.identified_by {
+                Event::PusherNear => Columns::PUSHER_WAS_NEAR,
+                Event::FixelNear => columns.fixel_was_near(fixel),
+                Event::Motion => Columns::felt(MU_S),
+            };
+            let first = columns.unknown(of.name, fixel);
+            (first..first + of.numbers).map(move |column| Number {
+                column,
+                identified,
+                of,
+            })
+        })
+    })
+}
+
+/// Index of μ_s, the friction that takes part where the object moves.
+const MU_S: usize = 0;
+
+/// Number of the first pair of normal numbers of a step: behind those of all substeps.
+const FIRST_PAIR: u32 = 1 << 21;
+
+/// Number of a particle's first normal number of the first draw.
+const FIRST_NUMBER: u32 = 1 << 21;
+
+/// Draws the unknowns of one particle from their priors.
+pub(super) fn draw(
+    columns: Columns,
+    (draw, particle): (Draw, u32),
+    block: &mut BlockMut<'_>,
+    i: usize,
+) {
+    for (k, number) in (FIRST_NUMBER..).zip(numbers(columns)) {
+        block.column_mut(number.column)[i] = draw.normal(particle, k);
+    }
+}
+
+impl Unknown {
+    /// Returns false if a setup says that its value is exact.
+    fn is_open(&self, setup: &Setup) -> bool {
+        match self.name {
+            Name::PusherTurn => setup.pusher_turn() > 0.0,
+            Name::Feet => setup.support_is_uncertain(),
+            Name::PusherOffset | Name::Roughness | Name::Latency | Name::FixelOffset => true,
+        }
+    }
+}
+
+impl Propagation {
+    /// Takes the step (34) of every unknown. Until something has identified it, it is resampled from
+    /// its prior. Afterwards it takes a random step that keeps the prior, while the pusher moves.
+    pub(super) fn step_unknowns(
+        &mut self,
+        Transition { setup, columns, .. }: &Transition<'_>,
+        plan: &StepPlan,
+        draw: Draw,
+        block: &mut BlockMut<'_>,
+    ) {
+        let open = numbers(*columns).filter(|number| number.of.is_open(setup));
+        for (k, number) in (0..).zip(open) {
+            let fourth = k % 4;
+            on_widest(
+                self.level,
+                #[inline(always)]
+                || {
+                    if fourth == 0 {
+                        self.draw_normals(draw, FIRST_PAIR + k / 2, block);
+                    }
+                    self.step_number(plan, &number, fourth as usize, block);
+                },
+            );
+        }
+    }
+
+    /// Takes the step of one number, by the column `normals` of normal numbers.
+    #[inline(always)]
+    fn step_number(
+        &self,
+        plan: &StepPlan,
+        number: &Number,
+        normals: usize,
+        block: &mut BlockMut<'_>,
+    ) {
+        for chunk in 0..block.len().div_ceil(LANES) {
+            let identified = flag(&block.as_block(), number.identified, chunk);
+            let column = block.column_mut(number.column);
+            let before = load_chunk(column, chunk, 0.0);
+            let fresh = load_chunk(&self.normals[normals], chunk, 0.0);
+            let known = match plan.driven {
+                true => before * (1.0 - JITTER * JITTER).sqrt() + fresh * JITTER,
+                false => before,
+            };
+            store_chunk(column, chunk, &identified.select(known, fresh));
+        }
+    }
+}
