@@ -28,9 +28,9 @@ pub struct Uncertainty {
     pub fixel_position: f64,
     /// Standard deviation of the logarithm of a factor of these offsets: rigs differ.
     pub roughness: f64,
-    /// Factor on the smoother half of rigs of `fixel_position`, `pusher_lag` and, while the camera is
-    /// off, `force_std`. Its fourth root is the factor of `pusher_offset`. A value below
-    /// 1 means that some rigs are measured much better than others.
+    /// Factor of `fixel_position` and `pusher_lag` on the smoother half of rigs. Its fourth root is
+    /// the factor of `pusher_offset`. A value below 1 means that some rigs are measured much better
+    /// than others.
     pub well_measured: f64,
     /// Standard deviation of the logarithm by which the camera's noise differs from its nominal
     /// value.
@@ -95,10 +95,9 @@ impl Uncertainty {
         }
     }
 
-    /// b of docs/model.md (36), the factor of `fixel_position`, `pusher_lag` and, while the camera is
-    /// off, `force_std`. The logarithm of the rig's roughness is `roughness`, whose
-    /// own factor is not included. b is `well_measured` on the smoother half of rigs, 1 on the
-    /// others.
+    /// b of docs/model.md (36), the factor of `fixel_position` and `pusher_lag`. The logarithm of the
+    /// rig's roughness is `roughness`, whose own factor is not included. b is `well_measured` on the
+    /// smoother half of rigs, 1 on the others.
     #[inline(always)]
     pub(crate) fn well_measured_at<const W: usize>(&self, roughness: Lanes<W>) -> Lanes<W> {
         let one = Lanes::splat(1.0);

@@ -4,9 +4,8 @@
 use stickslip_dynamics::{Lanes, Pose};
 use stickslip_filter::BlockMut;
 
-use crate::particle::chunk::{Column, LANES, load_chunk};
+use crate::particle::chunk::{Column, LANES};
 use crate::particle::propagation::{Propagation, Transition, load_columns};
-use crate::particle::step_plan::StepPlan;
 use crate::particle::unknown::Name;
 use crate::uncertainty::Uncertainty;
 

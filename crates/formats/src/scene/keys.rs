@@ -200,7 +200,7 @@ const TABLES: [(&str, &[Key]); 14] = [
             "the standard deviation of ln of a common factor on these offsets"),
         number("well_measured", PLAIN, Share, Or("0.1"),
             "the factor on fixel_position and pusher_lag on the smoother half of rigs")
-            .note("Also on force_std with the camera off. 1 if fixel_position exceeds its default."),
+            .note("1 if fixel_position exceeds its default."),
         number("camera_noise", PLAIN, NotNegative, Or("0.3"),
             "the standard deviation of ln of the camera's noise over that of [camera]"),
         number("latency", Second, Share, Or("0.01"),
