@@ -1,5 +1,5 @@
-//! One experiment with the runs of several variants: [`ReportedExperiment`], its sentences, its scores
-//! and its section of a report.
+//! One experiment with the runs of several variants: [`ReportedExperiment`], its scores and its
+//! section of a report.
 
 use stickslip::diagnosis::assumed_stall_force;
 use stickslip::{Log, Occlusion, Setup};
