@@ -1,6 +1,5 @@
 //! Rust source as text: without comments and literals ([`code_only`]), without its tests
-//! ([`without_tests`]), its names ([`names`]), the paths of its own crate ([`own_paths`]) and its
-//! functions ([`functions`]).
+//! ([`without_tests`]), its names ([`names`]) and the paths of its own crate ([`own_paths`]).
 
 /// The source with every comment, string and character literal blanked out; lines stay where they
 /// are.
@@ -201,57 +200,6 @@ fn leaves<'a>(text: &'a str, prefix: &str, paths: &mut Vec<String>) -> &'a str {
     }
 }
 
-/// A function with a body.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Function<'a> {
-    /// Name.
-    pub name: &'a str,
-    /// First line, from 1.
-    pub line: usize,
-    /// Lines from the signature to the closing brace.
-    pub lines: usize,
-}
-
-/// The functions of code without comments and literals.
-pub fn functions(code: &str) -> Vec<Function<'_>> {
-    let mut functions = Vec::new();
-    for (at, _) in code.match_indices("fn ") {
-        if code[..at].ends_with(|c: char| c.is_alphanumeric() || c == '_') {
-            continue;
-        }
-        let rest = &code[at + 3..];
-        let end = rest
-            .find(|c: char| !(c.is_alphanumeric() || c == '_'))
-            .unwrap_or(0);
-        let Some(length) = body_end(rest).filter(|_| end > 0) else {
-            continue;
-        };
-        functions.push(Function {
-            name: &rest[..end],
-            line: code[..at].matches('\n').count() + 1,
-            lines: rest[..length].matches('\n').count() + 1,
-        });
-    }
-    functions
-}
-
-/// Bytes up to the end of the body of the function whose name begins `text`; `None` without a body.
-fn body_end(text: &str) -> Option<usize> {
-    let (mut round, mut curly) = (0, 0);
-    for (at, c) in text.char_indices() {
-        match c {
-            '(' | '[' => round += 1,
-            ')' | ']' => round -= 1,
-            '{' => curly += 1,
-            '}' if curly == 1 => return Some(at),
-            '}' => curly -= 1,
-            ';' if round == 0 && curly == 0 => return None,
-            _ => {}
-        }
-    }
-    None
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -333,15 +281,5 @@ mod tests {
             own_paths("super::super::k", &["m", "n", "o"]),
             [(1, "m::k".to_string())]
         );
-    }
-
-    #[test]
-    fn functions_have_lengths_where_they_have_bodies() {
-        let code = "fn a<const N: usize>(x: [f64; N]) -> u8 {\n if x { y }\n}\ntrait T {\n fn b();\n pub fn c() {}\n}\nlet f: fn (u8);";
-        let found: Vec<(&str, usize, usize)> = functions(code)
-            .iter()
-            .map(|f| (f.name, f.line, f.lines))
-            .collect();
-        assert_eq!(found, [("a", 1, 3), ("c", 6, 1)]);
     }
 }
