@@ -20,7 +20,6 @@ const LAYERED: [(&str, &[Layer]); 1] = [(
             "feet",
             "prepared_scene",
             "assembly",
-            "creep",
             "contact_state",
             "stated_problem",
             "block_problems",

@@ -12,7 +12,6 @@ mod layers;
 mod program;
 mod prose;
 mod rust_text;
-mod sizes;
 mod sources;
 mod tree;
 
@@ -22,12 +21,10 @@ use std::process::ExitCode;
 use finding::Finding;
 use tree::Tree;
 
-const USAGE: &str =
-    "usage: cargo xtask tidy | sizes | determinism | digest FOLDER... [--against FILE]
+const USAGE: &str = "usage: cargo xtask tidy | determinism | digest FOLDER... [--against FILE]
 
 tidy         crate arrows, layers inside crates, what libraries must not name, file lengths,
              paths and citations in sources and documents
-sizes        files, lines, public items, circles of files and lengths of functions
 determinism  the same estimate, byte for byte, in debug and release and on 1, 2 and 3 threads
 digest       one line per experiment below the folders and way of filtering it, with a hash of the
              estimate; fails where a line differs from that in FILE";
@@ -40,7 +37,6 @@ fn main() -> ExitCode {
     };
     let outcome = match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
         ["tidy"] => tidy(root),
-        ["sizes"] => Tree::read(root).map(|tree| sizes::report(&tree)),
         ["determinism"] => determinism::check(root),
         ["digest", ref folders @ .., "--against", file] if !folders.is_empty() => {
             digest::check(root, folders, Some(Path::new(file)))
@@ -67,7 +63,7 @@ fn main() -> ExitCode {
 
 fn tidy(root: &Path) -> Result<String, String> {
     let tree = Tree::read(root)?;
-    let mut findings = arrows::check(&arrows::packages(root)?);
+    let mut findings = arrows::check(&arrows::metadata(root)?);
     findings.extend(layers::check(&tree));
     findings.extend(sources::check(&tree));
     findings.extend(documents::check(&tree));

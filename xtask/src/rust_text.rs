@@ -1,109 +1,57 @@
 //! Rust source as text: without comments and literals ([`code_only`]), without its tests
-//! ([`without_tests`]), its names ([`names`]), the paths of its own crate ([`own_paths`]) and its
-//! functions ([`functions`]).
+//! ([`without_tests`]), its names ([`names`]) and the paths of its own crate ([`own_paths`]).
 
-/// The source with every comment, string and character literal blanked out; lines stay where they
-/// are.
+use proc_macro2::{Delimiter, Span, TokenStream, TokenTree};
+
+/// The source without comments and literals, its tokens in their lines; doc comments leave
+/// `#[doc=]`. Empty for what is no Rust.
 pub fn code_only(source: &str) -> String {
-    let mut code = String::with_capacity(source.len());
-    let mut rest = source;
-    let mut after_name = false;
-    while let Some(first) = rest.chars().next() {
-        let length = if after_name { 0 } else { literal(rest) }
-            .max(comment(rest))
-            .max(quoted(rest));
-        if length > 0 {
-            code.extend(
-                rest[..length]
-                    .chars()
-                    .map(|c| if c == '\n' { '\n' } else { ' ' }),
-            );
-        } else {
-            code.push(first);
-        }
-        after_name = length == 0 && (first.is_alphanumeric() || first == '_');
-        rest = &rest[length.max(first.len_utf8())..];
-    }
-    code
+    let mut code = Code::default();
+    code.push_all(source.parse().unwrap_or_default());
+    code.text
 }
 
-/// Bytes of the comment that the text begins with; 0 where it begins with none.
-fn comment(text: &str) -> usize {
-    if text.starts_with("//") {
-        return text.find('\n').unwrap_or(text.len());
-    }
-    if !text.starts_with("/*") {
-        return 0;
-    }
-    let mut depth = 0;
-    let mut at = 0;
-    while at < text.len() {
-        let (step, change) = match &text.as_bytes()[at..] {
-            [b'/', b'*', ..] => (2, 1),
-            [b'*', b'/', ..] => (2, -1),
-            _ => (1, 0),
-        };
-        depth += change;
-        at += step;
-        if depth == 0 {
-            break;
+#[derive(Default)]
+struct Code {
+    text: String,
+    /// Lines begun after the first one.
+    lines: usize,
+}
+
+impl Code {
+    fn push_all(&mut self, tokens: TokenStream) {
+        for token in tokens {
+            match token {
+                TokenTree::Group(group) => {
+                    let (open, close) = match group.delimiter() {
+                        Delimiter::Parenthesis => ("(", ")"),
+                        Delimiter::Brace => ("{", "}"),
+                        Delimiter::Bracket => ("[", "]"),
+                        Delimiter::None => ("", ""),
+                    };
+                    self.push(open, group.span_open());
+                    self.push_all(group.stream());
+                    self.push(close, group.span_close());
+                }
+                TokenTree::Ident(name) => self.push(&name.to_string(), name.span()),
+                TokenTree::Punct(sign) => self.push(&sign.to_string(), sign.span()),
+                TokenTree::Literal(_) => {}
+            }
         }
     }
-    at
-}
 
-/// Bytes of the string or character that the text begins with, `"..."` or `'.'`; 0 for none, as for
-/// a lifetime.
-fn quoted(text: &str) -> usize {
-    if let Some(after) = text.strip_prefix('"') {
-        return 1 + closing(after, '"');
-    }
-    let Some(after) = text.strip_prefix('\'') else {
-        return 0;
-    };
-    let mut next = after.chars();
-    match (next.next(), next.next()) {
-        (Some('\\'), _) => 1 + closing(after, '\''),
-        (Some(c), Some('\'')) => 2 + c.len_utf8(),
-        _ => 0,
-    }
-}
-
-/// Bytes of the prefixed literal that the text begins with, `r"..."`, `r#"..."#`, `b"..."`,
-/// `br"..."`, `c"..."`, `b'.'`; 0 for none.
-fn literal(text: &str) -> usize {
-    let prefix = text.len() - text.trim_start_matches(['b', 'c', 'r']).len();
-    let after = &text[prefix..];
-    if prefix == 0 || prefix > 2 {
-        return 0;
-    }
-    if !text[..prefix].contains('r') {
-        let length = quoted(after);
-        return if length == 0 { 0 } else { prefix + length };
-    }
-    let hashes = after.len() - after.trim_start_matches('#').len();
-    let Some(content) = after[hashes..].strip_prefix('"') else {
-        return 0;
-    };
-    let end = format!("\"{}", "#".repeat(hashes));
-    prefix
-        + hashes
-        + 1
-        + content
-            .find(&end)
-            .map_or(content.len(), |at| at + end.len())
-}
-
-/// Bytes up to and with the closing quote, which is not one behind a backslash.
-fn closing(text: &str, quote: char) -> usize {
-    let mut escaped = false;
-    for (at, c) in text.char_indices() {
-        if c == quote && !escaped {
-            return at + 1;
+    /// Names stand apart from each other.
+    fn push(&mut self, token: &str, span: Span) {
+        while self.lines + 1 < span.start().line {
+            self.text.push('\n');
+            self.lines += 1;
         }
-        escaped = c == '\\' && !escaped;
+        let in_name = |c: char| c.is_alphanumeric() || c == '_';
+        if self.text.ends_with(in_name) && token.starts_with(in_name) {
+            self.text.push(' ');
+        }
+        self.text += token;
     }
-    text.len()
 }
 
 /// The source up to its module of tests: `#[cfg(test)]` with `mod ... {` below it.
@@ -201,102 +149,17 @@ fn leaves<'a>(text: &'a str, prefix: &str, paths: &mut Vec<String>) -> &'a str {
     }
 }
 
-/// A function with a body.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Function<'a> {
-    /// Name.
-    pub name: &'a str,
-    /// First line, from 1.
-    pub line: usize,
-    /// Lines from the signature to the closing brace.
-    pub lines: usize,
-}
-
-/// The functions of code without comments and literals.
-pub fn functions(code: &str) -> Vec<Function<'_>> {
-    let mut functions = Vec::new();
-    for (at, _) in code.match_indices("fn ") {
-        if code[..at].ends_with(|c: char| c.is_alphanumeric() || c == '_') {
-            continue;
-        }
-        let rest = &code[at + 3..];
-        let end = rest
-            .find(|c: char| !(c.is_alphanumeric() || c == '_'))
-            .unwrap_or(0);
-        let Some(length) = body_end(rest).filter(|_| end > 0) else {
-            continue;
-        };
-        functions.push(Function {
-            name: &rest[..end],
-            line: code[..at].matches('\n').count() + 1,
-            lines: rest[..length].matches('\n').count() + 1,
-        });
-    }
-    functions
-}
-
-/// Bytes up to the end of the body of the function whose name begins `text`; `None` without a body.
-fn body_end(text: &str) -> Option<usize> {
-    let (mut round, mut curly) = (0, 0);
-    for (at, c) in text.char_indices() {
-        match c {
-            '(' | '[' => round += 1,
-            ')' | ']' => round -= 1,
-            '{' => curly += 1,
-            '}' if curly == 1 => return Some(at),
-            '}' => curly -= 1,
-            ';' if round == 0 && curly == 0 => return None,
-            _ => {}
-        }
-    }
-    None
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn kept(source: &str) -> Vec<&str> {
-        source.split_whitespace().collect()
-    }
-
     #[test]
-    fn code_only_blanks_comments_and_keeps_lines() {
-        let code = code_only("a // fs\n/* fs /* fs */ fs\n*/ b /// fs\nc");
-        assert_eq!(kept(&code), ["a", "b", "c"]);
-        assert_eq!(code.lines().count(), 4);
-    }
-
-    #[test]
-    fn code_only_blanks_literals() {
-        for literal in [
-            r#""fs \" fs""#,
-            r##"r#"fs " fs"#"##,
-            r#"b"fs""#,
-            "br\"fs\"",
-            "'f'",
-            r"'\''",
-            "'\\u{66}'",
-            r"b'\\'",
-            "\"\\\\\"",
-            "'\"'",
-        ] {
-            assert_eq!(
-                kept(&code_only(&format!("a {literal} b"))),
-                ["a", "b"],
-                "{literal}"
-            );
-        }
-    }
-
-    #[test]
-    fn code_only_keeps_lifetimes_and_raw_names() {
+    fn code_only_leaves_out_comments_and_literals_and_keeps_lines() {
+        let source = "a // fs\n/* fs /* fs */ fs\n*/ b r#\"fs \" fs\"# b'\\'' \"\\\"fs\"\nfn f<'a>(x: &'a str) { crate::c as d }";
         assert_eq!(
-            code_only("fn f<'a>(x: &'a str, y: &'static T)"),
-            "fn f<'a>(x: &'a str, y: &'static T)"
+            code_only(source),
+            "a\n\nb\nfn f<'a>(x:&'a str){crate::c as d}"
         );
-        assert_eq!(code_only("r#type + br + cr"), "r#type + br + cr");
-        assert_eq!(kept(&code_only("number\"fs\"")), ["number"]);
     }
 
     #[test]
@@ -333,15 +196,5 @@ mod tests {
             own_paths("super::super::k", &["m", "n", "o"]),
             [(1, "m::k".to_string())]
         );
-    }
-
-    #[test]
-    fn functions_have_lengths_where_they_have_bodies() {
-        let code = "fn a<const N: usize>(x: [f64; N]) -> u8 {\n if x { y }\n}\ntrait T {\n fn b();\n pub fn c() {}\n}\nlet f: fn (u8);";
-        let found: Vec<(&str, usize, usize)> = functions(code)
-            .iter()
-            .map(|f| (f.name, f.line, f.lines))
-            .collect();
-        assert_eq!(found, [("a", 1, 3), ("c", 6, 1)]);
     }
 }

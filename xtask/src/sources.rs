@@ -54,7 +54,7 @@ const BANS: [Ban; 4] = [
         folders: &LIBRARIES,
         names: &["thread"],
         rule: "a library crate starts no thread",
-        next: "use the ordered loops of crates/filter/src/parallel.rs, on threads that the caller chose",
+        next: "use the ordered loops of crates/filter/src/threads/parallel.rs, on threads that the caller chose",
     },
     Ban {
         folders: &["crates/testbed/src/rig/"],

@@ -86,11 +86,7 @@ fn regular(corners: u32, radius: f64) -> Result<Shape, ShapeError> {
 }
 
 fn ellipse() -> Result<Shape, ShapeError> {
-    Shape::new(vec![Part::Ellipse {
-        semi_axes: [0.025, 0.018],
-        centre: [0.0; 2],
-        angle: 0.0,
-    }])
+    Shape::new(vec![Part::ellipse([0.025, 0.018], [0.0; 2], 0.0)])
 }
 
 /// A bar whose face is where the disc's foremost point is.

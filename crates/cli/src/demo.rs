@@ -104,12 +104,17 @@ fn runs(experiment: &Experiment, conditions: &RunConditions) -> Result<Vec<Repor
     Ok(runs.collect::<Result<_, _>>()?)
 }
 
-/// Story and scores.
+/// Sentences and scores.
 fn tables(experiment: &ReportedExperiment<'_>) -> String {
-    let sentences = experiment.story().sentences().join("\n");
+    let sentences: Vec<String> = experiment
+        .sentences()
+        .iter()
+        .map(ToString::to_string)
+        .collect();
     format!(
-        "{}\n{sentences}\n\n{}",
+        "{}\n{}\n\n{}",
         experiment.name,
+        sentences.join("\n"),
         experiment.scores()
     )
 }

@@ -4,12 +4,12 @@
 use crate::bridge::Bridge;
 use crate::lineage::Lineage;
 use crate::model::{Model, WeightedSums};
-use crate::parallel::PerThread;
 use crate::particles::{BLOCK, ParticleSet};
 use crate::report::{StepReport, WeightUpdate};
 use crate::second_try::keep_failed_out;
 use crate::settings::{Settings, SettingsError};
 use crate::streams::{Draw, Purpose, Streams};
+use crate::threads::parallel::PerThread;
 use crate::weights::{BlockWeights, LogWeights, UnnormalisedWeights};
 
 /// A particle filter over a model.

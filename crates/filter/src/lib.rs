@@ -17,26 +17,22 @@
 //! them to itself. They help where the system runs them; a filter does not wait for those that it
 //! does not.
 
-mod awake;
 mod bridge;
 mod ensemble;
 mod filter;
-mod helpers;
 mod kalman;
 mod lineage;
 mod model;
 mod moments;
-mod pace;
-mod parallel;
 mod particles;
 mod report;
 mod resample;
 mod second_try;
 mod settings;
 mod streams;
+mod threads;
 mod weights;
 
-pub use awake::keep_threads_awake;
 pub use ensemble::EnsembleShape;
 pub use filter::ParticleFilter;
 pub use kalman::constant_velocity::{AxisEstimate, ConstantVelocity, Filtered};
@@ -52,4 +48,5 @@ pub use resample::Resampling;
 pub use second_try::{Checkpoint, Pool, SecondTry};
 pub use settings::{Settings, SettingsError};
 pub use streams::{Draw, Purpose, Streams};
+pub use threads::awake::keep_threads_awake;
 pub use weights::{LogWeights, WeightError};

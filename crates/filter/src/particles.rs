@@ -4,7 +4,7 @@
 //! and inside it every column is a contiguous slice, so that SIMD lanes are neighbouring particles.
 //! The last block is padded; padding is never seen from outside.
 
-use crate::parallel;
+use crate::threads::parallel;
 
 /// Particles in a block. Part of the determinism contract: never the number of threads.
 ///

@@ -12,8 +12,8 @@ use std::ops::Range;
 
 use stickslip_lanes::exponentials;
 
-use crate::parallel;
 use crate::particles::BLOCK;
+use crate::threads::parallel;
 
 /// Particles whose weights one thread normalises at least: fewer take less time than a thread takes
 /// to come and help.

@@ -276,15 +276,6 @@ impl Change {
                 radius: scale * radius,
                 centre: self.of_point(*centre),
             },
-            Part::Ellipse {
-                semi_axes,
-                centre,
-                angle,
-            } => Part::Ellipse {
-                semi_axes: semi_axes.map(|axis| scale * axis),
-                centre: self.of_point(*centre),
-                angle: *angle,
-            },
         }
     }
 

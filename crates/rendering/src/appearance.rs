@@ -48,14 +48,22 @@ pub struct Appearance {
 impl Hand {
     /// A fist with its forearm: the fist's middle at the origin, the knuckles along x.
     pub fn fist(heights: [f64; 2]) -> Self {
-        let ellipse = |semi_axes: [f64; 2], centre: [f64; 2], angle: f64| Part::Ellipse {
-            semi_axes,
-            centre,
-            angle,
+        let disc = |radius: f64, x: f64| Part::Disc {
+            radius,
+            centre: [x, 0.0],
         };
-        let back = ellipse([0.042, 0.044], [0.0, 0.0], 0.0);
-        let thumb = ellipse([0.034, 0.012], [0.008, 0.042], 0.35);
-        let wrist = ellipse([0.050, 0.032], [-0.045, 0.0], 0.0);
+        let thumb = Part::Polygon {
+            vertices: vec![
+                [0.040, 0.054],
+                [0.028, 0.058],
+                [0.004, 0.053],
+                [-0.017, 0.042],
+                [-0.024, 0.030],
+                [-0.012, 0.026],
+                [0.012, 0.031],
+                [0.033, 0.042],
+            ],
+        };
         let arm = Part::Polygon {
             vertices: vec![
                 [-0.50, -0.040],
@@ -65,7 +73,7 @@ impl Hand {
             ],
         };
         Self {
-            parts: vec![back, thumb, wrist, arm],
+            parts: vec![disc(0.043, 0.0), thumb, disc(0.034, -0.045), arm],
             heights,
         }
     }

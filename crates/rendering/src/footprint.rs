@@ -7,11 +7,8 @@ use stickslip_dynamics::Part;
 pub(crate) enum Footprint {
     /// Points p with n · p <= offset for every (n, offset).
     Polygon(Vec<([f64; 2], f64)>),
-    /// Points p with |rows (p - centre)| <= 1.
-    Ellipse {
-        centre: [f64; 2],
-        rows: [[f64; 2]; 2],
-    },
+    /// Points p with |p - centre| <= radius.
+    Disc { centre: [f64; 2], radius: f64 },
 }
 
 impl Footprint {
@@ -19,12 +16,10 @@ impl Footprint {
     pub(crate) fn new(part: &Part) -> Self {
         match part {
             Part::Polygon { vertices } => Self::polygon(vertices),
-            Part::Disc { radius, centre } => Self::ellipse([*radius; 2], *centre, 0.0),
-            Part::Ellipse {
-                semi_axes,
-                centre,
-                angle,
-            } => Self::ellipse(*semi_axes, *centre, *angle),
+            Part::Disc { radius, centre } => Self::Disc {
+                centre: *centre,
+                radius: *radius,
+            },
         }
     }
 
@@ -38,22 +33,13 @@ impl Footprint {
         Self::Polygon(vertices.iter().zip(next).map(side).collect())
     }
 
-    fn ellipse(semi_axes: [f64; 2], centre: [f64; 2], angle: f64) -> Self {
-        let (sin, cos) = libm::sincos(angle);
-        let [a, b] = semi_axes;
-        Self::Ellipse {
-            centre,
-            rows: [[cos / a, sin / a], [-sin / b, cos / b]],
-        }
-    }
-
     /// Entry of the segment from `start` to `start + run` into the region, as a share of it in [0,
     /// 1]; `None` where it does not enter.
     pub(crate) fn entry(&self, start: [f64; 2], run: [f64; 2]) -> Option<f64> {
         match self {
             Self::Polygon(sides) => entry_of_polygon(sides, start, run),
-            Self::Ellipse { centre, rows } => {
-                let scaled = |v: [f64; 2]| [dot(rows[0], v), dot(rows[1], v)];
+            Self::Disc { centre, radius } => {
+                let scaled = |v: [f64; 2]| v.map(|x| x / radius);
                 entry_of_circle(
                     scaled([start[0] - centre[0], start[1] - centre[1]]),
                     scaled(run),
@@ -118,21 +104,16 @@ mod tests {
         assert_eq!(square().entry([3.0, 1.0], [0.0, 0.0]), None);
     }
 
-    /// The unit circle at (1, 2), scaled to 2 by 0.5 and turned by a quarter.
     #[test]
-    fn entry_of_an_ellipse_is_where_the_segment_meets_it() {
-        let part = Part::Ellipse {
-            semi_axes: [2.0, 0.5],
+    fn entry_of_a_disc_is_where_the_segment_meets_it() {
+        let disc = Footprint::new(&Part::Disc {
+            radius: 2.0,
             centre: [1.0, 2.0],
-            angle: std::f64::consts::FRAC_PI_2,
-        };
-        let ellipse = Footprint::new(&part);
-        assert_eq!(ellipse.entry([1.0, 3.9], [0.0, 1.0]), Some(0.0));
-        let sideways = ellipse.entry([-1.0, 2.0], [2.0, 0.0]).unwrap();
-        assert!((sideways - 0.75).abs() < 1e-15);
-        let along = ellipse.entry([1.0, 5.0], [0.0, -4.0]).unwrap();
-        assert!((along - 0.25).abs() < 1e-15);
-        assert_eq!(ellipse.entry([1.0, 5.0], [0.0, 4.0]), None);
-        assert_eq!(ellipse.entry([3.0, 5.0], [0.0, -4.0]), None);
+        });
+        assert_eq!(disc.entry([1.0, 3.9], [0.0, 1.0]), Some(0.0));
+        let along = disc.entry([1.0, 8.0], [0.0, -8.0]).unwrap();
+        assert!((along - 0.5).abs() < 1e-15);
+        assert_eq!(disc.entry([1.0, 5.0], [0.0, 4.0]), None);
+        assert_eq!(disc.entry([3.1, 5.0], [0.0, -4.0]), None);
     }
 }

@@ -156,9 +156,6 @@ pub(crate) fn square(edge: f64) -> Part {
 fn disc_about(part: &Part) -> ([f64; 2], f64) {
     match part {
         Part::Disc { radius, centre } => (*centre, *radius),
-        Part::Ellipse {
-            semi_axes, centre, ..
-        } => (*centre, semi_axes[0].max(semi_axes[1])),
         Part::Polygon { vertices } => {
             let count = vertices.len() as f64;
             let middle = vertices.iter().fold([0.0; 2], |sum, v| {

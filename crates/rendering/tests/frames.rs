@@ -50,11 +50,9 @@ fn still(object: Pose) -> Exposure {
     })
 }
 
-const ELLIPSE: Part = Part::Ellipse {
-    semi_axes: [0.03, 0.02],
-    centre: [0.004, 0.0],
-    angle: 0.3,
-};
+fn ellipse() -> Part {
+    Part::ellipse([0.03, 0.02], [0.004, 0.0], 0.3)
+}
 
 /// Surface that a line of sight can meet.
 enum Surface {
@@ -63,7 +61,7 @@ enum Surface {
     Plate,
 }
 
-/// Follows the line of sight of a pixel down from the height `top` of [`ELLIPSE`] at `pose`, in
+/// Follows the line of sight of a pixel down from the height `top` of [`ellipse`] at `pose`, in
 /// steps of 0.2 mm.
 fn first_on_line_of_sight(camera: &Camera, pixel: [f64; 2], pose: Pose, top: f64) -> Surface {
     let inside = |[x, y]: [f64; 2]| {
@@ -101,7 +99,7 @@ fn frame_is_what_lines_of_sight_meet() {
     );
     let renderer = Renderer::new(
         camera,
-        RenderScene::new(&scene(Shape::new(vec![ELLIPSE]).unwrap()), &appearance),
+        RenderScene::new(&scene(Shape::new(vec![ellipse()]).unwrap()), &appearance),
         plain_optics(),
         1,
     );

@@ -87,7 +87,7 @@ impl ReportedExperiment<'_> {
         Drawing {
             width: wide + LIST,
             height: high,
-            label: self.story().title(),
+            label: self.title(),
             body,
             narrow: None,
         }

@@ -87,21 +87,14 @@ pub(crate) fn bounds(points: impl Iterator<Item = [f64; 2]>) -> Option<[[f64; 2]
 fn corners(part: &Part) -> Vec<[f64; 2]> {
     match part {
         Part::Polygon { vertices } => vertices.clone(),
-        Part::Disc { radius, centre } => {
-            ellipse([*radius; 2], &Pose::new(centre[0], centre[1], 0.0))
-        }
-        Part::Ellipse {
-            semi_axes,
-            centre,
-            angle,
-        } => ellipse(*semi_axes, &Pose::new(centre[0], centre[1], *angle)),
+        Part::Disc { radius, centre } => circle(*radius, *centre),
     }
 }
 
-fn ellipse([a, b]: [f64; 2], pose: &Pose) -> Vec<[f64; 2]> {
+fn circle(radius: f64, [x, y]: [f64; 2]) -> Vec<[f64; 2]> {
     let corner = |k: usize| {
         let (sin, cos) = libm::sincos(std::f64::consts::TAU * k as f64 / TURN as f64);
-        pose.transform([a * cos, b * sin])
+        [x + radius * cos, y + radius * sin]
     };
     (0..TURN).map(corner).collect()
 }
@@ -163,14 +156,6 @@ fn holds(part: &Part, [x, y]: [f64; 2]) -> bool {
                 .all(|([x0, y0], [x1, y1])| (x1 - x0) * (y - y0) - (y1 - y0) * (x - x0) >= 0.0)
         }
         Part::Disc { radius, centre } => (x - centre[0]).hypot(y - centre[1]) <= *radius,
-        Part::Ellipse {
-            semi_axes: [a, b],
-            centre,
-            angle,
-        } => {
-            let [u, v] = Pose::new(0.0, 0.0, -angle).rotate([x - centre[0], y - centre[1]]);
-            (u / a).hypot(v / b) <= 1.0
-        }
     }
 }
 

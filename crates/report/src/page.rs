@@ -8,7 +8,7 @@ use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, percent_encode};
 use crate::drawing::Drawing;
 use crate::font::{BOLD, REGULAR};
 use crate::playback::Playback;
-use crate::story::{Fate, Story};
+use crate::sentences::{Fate, Sentence};
 use crate::table::Table;
 
 const STYLE: &str = include_str!("../page/report.css");
@@ -48,8 +48,8 @@ pub struct Section {
 pub enum Block {
     /// A paragraph.
     Text(String),
-    /// Which methods kept track of an object, and which lost it.
-    Fates(Story),
+    /// A list of sentences, as which methods kept track of an object, and which lost it.
+    Sentences(Vec<Sentence>),
     /// A remark in small letters.
     Note(String),
     /// A table under a caption, which may be empty.
@@ -127,7 +127,9 @@ impl Block {
     fn html(&self) -> Markup {
         match self {
             Self::Text(text) => html! { p { (text) } },
-            Self::Fates(story) => fates(story),
+            Self::Sentences(all) => {
+                html! { ul class="fates" { @for sentence in all { (sentence.html()) } } }
+            }
             Self::Note(text) => html! { p class="note" { (text) } },
             Self::Table(table, caption) => table.html(caption),
             Self::Figure(drawing, caption) => html! {
@@ -142,14 +144,17 @@ impl Block {
     }
 }
 
-fn fates(story: &Story) -> Markup {
-    html! {
-        ul class="fates" {
-            @for (fate, names) in story.fates() {
-                @let (class, sign) = match fate { Fate::Kept => ("kept", "✓"), Fate::Drifted => ("drifted", "≈"), Fate::Lost => ("lost", "✗"), Fate::Unknown => ("unknown", "?") };
-                li class=(class) { span aria-hidden="true" { (sign) } b { (fate.name()) } (names) }
-            }
-            @for line in story.seen().into_iter().chain(story.learnt.iter().cloned()) { li { span aria-hidden="true" { "•" } (line) } }
+impl Sentence {
+    fn html(&self) -> Markup {
+        let (class, sign) = match self.fate {
+            Some(Fate::Kept) => ("kept", "✓"),
+            Some(Fate::Drifted) => ("drifted", "≈"),
+            Some(Fate::Lost) => ("lost", "✗"),
+            Some(Fate::Unknown) => ("unknown", "?"),
+            None => ("", "•"),
+        };
+        html! {
+            li class=(class) { span aria-hidden="true" { (sign) } @if let Some(fate) = self.fate { b { (fate.name()) } } (self.text) }
         }
     }
 }

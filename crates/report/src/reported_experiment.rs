@@ -1,5 +1,5 @@
-//! One experiment with the runs of several variants: [`ReportedExperiment`], its story, its scores
-//! and its section of a report.
+//! One experiment with the runs of several variants: [`ReportedExperiment`], its scores and its
+//! section of a report.
 
 use stickslip::diagnosis::assumed_stall_force;
 use stickslip::{Log, Occlusion, Setup};
@@ -12,7 +12,7 @@ use crate::marks::Mark;
 use crate::page::{Block, Section};
 use crate::playback::{Playback, PlaybackRun};
 use crate::reported_run::ReportedRun;
-use crate::story::{Fate, Outcome, Story};
+use crate::sentences::Fate;
 use crate::table::{Table, number};
 use crate::touch::{TouchRule, true_touches};
 
@@ -107,44 +107,18 @@ impl<'a> ReportedExperiment<'a> {
         }
     }
 
-    /// Story of the experiment, made from numbers.
-    #[must_use]
-    pub fn story(&self) -> Story {
-        let outcome = |run: &ReportedRun| Outcome {
-            name: run.title().to_owned(),
-            camera_on: run.camera_on(),
-            wmse_mm: run.wmse_mm(),
-        };
-        let off = self.occluded();
-        let within = |row: &usize| off.is_some_and(|[from, to]| (from..to).contains(row));
-        let unseen = self.log.object_out_of_sight();
-        let lost = (0..self.log.len()).filter(|row| unseen[*row]);
-        Story {
-            what: self.what.clone(),
-            duration: self.log.duration(),
-            off: off.map(|rows| times(&self.log.time, rows)),
-            lost: lost.filter(|row| !within(row)).count(),
-            rows: self.log.len(),
-            lag: self.reference.latency,
-            first_fixel: self.first_fixel,
-            outcomes: self.runs.iter().map(outcome).collect(),
-            learnt: self.learnt(),
-        }
-    }
-
-    /// Playback and picture, then the story, scores and the other figures.
+    /// Playback and picture, then sentences, scores and the other figures.
     #[must_use]
     pub fn section(&self) -> Section {
-        let story = self.story();
         let title = if self.what.is_empty() {
             self.name.clone()
         } else {
-            story.title()
+            self.title()
         };
         let head = [
             Block::Playback(Box::new(self.playback())),
-            Block::Text(story.occlusion()),
-            Block::Fates(story),
+            Block::Text(self.occlusion()),
+            Block::Sentences(self.results()),
             Block::Table(self.scores(), self.name.clone()),
             Block::Note(format!(
                 "Pose RMSE: root of the mean squared error of the pose against the {}{}. Angles are multiplied by the radius \
@@ -314,7 +288,7 @@ impl<'a> ReportedExperiment<'a> {
     }
 
     /// Occluded rows from..to, with the rows next to them in which the camera lost the object.
-    fn occluded(&self) -> Option<[usize; 2]> {
+    pub(crate) fn occluded(&self) -> Option<[usize; 2]> {
         let first = self.hidden.iter().position(|hidden| *hidden)?;
         let last = self.hidden.iter().rposition(|hidden| *hidden)?;
         let blind = row_ranges(self.blind());
@@ -382,5 +356,18 @@ impl<'a> ReportedExperiment<'a> {
         let mut learners = self.runs.iter().filter(learns);
         let first = learners.clone().next();
         learners.rfind(|run| !run.camera_on()).or(first)
+    }
+
+    /// Probabilities of contact with the pusher, then with each fixel, row by row; `None` in rows
+    /// without.
+    pub(crate) fn touch_probabilities(&self, run: &ReportedRun) -> Vec<Option<Vec<f64>>> {
+        let rule = TouchRule::measured(self.setup);
+        let rows = run.scored.estimate.rows.iter().enumerate();
+        rows.map(|(row, estimate)| {
+            let particles = run.cloud.get(row).map_or(&[][..], Vec::as_slice);
+            let pusher = self.log.pusher.get(row).copied().flatten();
+            rule.probabilities(estimate, particles, pusher)
+        })
+        .collect()
     }
 }

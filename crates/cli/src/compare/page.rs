@@ -1,7 +1,7 @@
 //! A comparison as a page: [`report`].
 
 use stickslip_evaluation::Variant;
-use stickslip_report::{Block, Fate, Outcome, Report, Section, Story};
+use stickslip_report::{Block, Fate, Outcome, Report, Section, Sentence, verdicts};
 
 use super::folder_set::{FolderSet, Overall};
 use super::results::{Comparison, LEGEND};
@@ -71,7 +71,7 @@ pub fn report(comparison: &Comparison, played: Vec<Section>) -> Report {
             .map(|best| Block::Text(best.to_string()))
             .chain([
                 Block::Text(runs(comparison)),
-                Block::Fates(story(sets.first())),
+                Block::Sentences(of_all(sets.first())),
             ])
             .collect(),
         sections,
@@ -96,16 +96,13 @@ fn runs(comparison: &Comparison) -> String {
     )
 }
 
-/// Outcome of each variant that ran on all experiments.
-fn story(all: Option<&FolderSet>) -> Story {
+/// Verdicts on the variants that ran on all experiments.
+fn of_all(all: Option<&FolderSet>) -> Vec<Sentence> {
     let outcome = |row: &Overall| Outcome {
         name: row.variant.title().to_owned(),
         camera_on: row.variant.camera_on(),
         wmse_mm: row.median.wmse_mm,
     };
     let rows = all.into_iter().flat_map(|set| &set.methods);
-    Story {
-        outcomes: rows.map(outcome).collect(),
-        ..Story::default()
-    }
+    verdicts(&rows.map(outcome).collect::<Vec<_>>())
 }

@@ -3,40 +3,32 @@
 use stickslip_lanes::Lanes;
 
 use crate::geometry::edge::{Cover, Edge};
-use crate::geometry::ellipse::Ellipse;
 use crate::geometry::part::Part;
 use crate::geometry::polygon::Polygon;
-use crate::geometry::vec2::{Vec2, splat};
+use crate::geometry::vec2::{Vec2, dot, splat, sub};
 
-/// A polygon or an ellipse; a disc is an ellipse with equal axes.
+/// A polygon or a disc.
 #[derive(Clone, Debug)]
 pub(crate) enum ConvexPart {
     Polygon(Polygon),
-    Ellipse(Ellipse),
+    Disc { centre: Vec2, radius: f64 },
 }
 
 impl ConvexPart {
     pub fn new(part: &Part) -> Self {
         match part {
             Part::Polygon { vertices } => Self::Polygon(Polygon::new(vertices)),
-            Part::Disc { radius, centre } => {
-                Self::Ellipse(Ellipse::new(*centre, [1.0, 0.0], [*radius; 2]))
-            }
-            Part::Ellipse {
-                semi_axes,
-                centre,
-                angle,
-            } => {
-                let (sin, cos) = libm::sincos(*angle);
-                Self::Ellipse(Ellipse::new(*centre, [cos, sin], *semi_axes))
-            }
+            Part::Disc { radius, centre } => Self::Disc {
+                centre: *centre,
+                radius: *radius,
+            },
         }
     }
 
     pub fn polygon(&self) -> Option<&Polygon> {
         match self {
             Self::Polygon(polygon) => Some(polygon),
-            Self::Ellipse(_) => None,
+            Self::Disc { .. } => None,
         }
     }
 
@@ -44,7 +36,7 @@ impl ConvexPart {
     pub fn bounding_disc(&self) -> (Vec2, f64) {
         match self {
             Self::Polygon(polygon) => (polygon.centre, polygon.radius),
-            Self::Ellipse(ellipse) => (ellipse.centre, ellipse.outer_radius()),
+            Self::Disc { centre, radius } => (*centre, *radius),
         }
     }
 
@@ -56,13 +48,15 @@ impl ConvexPart {
         }
     }
 
-    /// Depth of points inside (m; negative outside): exact for polygons and discs inside, in sign
-    /// for ellipses.
+    /// Depth of points inside (m; negative outside).
     #[inline(always)]
     pub fn depth<const W: usize>(&self, points: Vec2<Lanes<W>>) -> Lanes<W> {
         match self {
             Self::Polygon(polygon) => polygon.depth(points),
-            Self::Ellipse(ellipse) => ellipse.depth(points),
+            Self::Disc { centre, radius } => {
+                let from_centre = sub(points, *centre);
+                -dot(from_centre, from_centre).sqrt() + *radius
+            }
         }
     }
 
@@ -76,8 +70,21 @@ impl ConvexPart {
     pub fn cover(&self, edge: &Edge, tolerance: f64) -> Option<Cover> {
         let cover = match self {
             Self::Polygon(polygon) => polygon.cover(edge, tolerance),
-            Self::Ellipse(ellipse) => ellipse.cover(edge),
+            Self::Disc { centre, radius } => cover_by_disc(*centre, *radius, edge),
         };
         cover.filter(|Cover { tolerant, .. }| tolerant[1] - tolerant[0] > 4.0 * tolerance)
     }
+}
+
+/// The chord of a disc along an edge.
+fn cover_by_disc(centre: Vec2, radius: f64, edge: &Edge) -> Option<Cover> {
+    let (middle, height) = edge.coordinates(centre);
+    let square = radius * radius - height * height;
+    let half = Some(square).filter(|square| *square > 0.0)?.sqrt();
+    let chord = [(middle - half).max(0.0), (middle + half).min(edge.length)];
+    Some(Cover {
+        tolerant: chord,
+        exact: chord,
+        flush: false,
+    })
 }

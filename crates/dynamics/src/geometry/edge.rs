@@ -50,13 +50,7 @@ impl Edge {
         add(scale(s, self.along), self.start)
     }
 
-    /// Returns true if a projection at distance `s` from its start belongs to the edge.
-    #[inline(always)]
-    pub fn spans(&self, s: f64, slack: f64) -> bool {
-        s >= -self.buried[0] - slack && s <= self.length + self.buried[1] + slack
-    }
-
-    /// [`spans`](Self::spans), lane by lane.
+    /// Lanes in which a projection at distance `s` from its start belongs to the edge.
     #[inline(always)]
     pub fn spans_each<const W: usize>(&self, s: Lanes<W>, slack: f64) -> Mask<W> {
         let [before, after] = self.buried;

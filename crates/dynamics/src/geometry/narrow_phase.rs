@@ -5,8 +5,8 @@
 //! the twists v of the object and v' of the other body, the rate of the gap is (n, r × n)·v − n·u,
 //! r the contact's arm and u the other surface's velocity there.
 //!
-//! Two kinds of pairs of features touch: an edge with a rounded vertex (corner or disc) or an
-//! ellipse, of either body; and two of the latter.
+//! Two kinds of pairs of features touch: an edge with a rounded vertex (corner or disc) of the
+//! other body, and two rounded vertices.
 //! - A corner touches every edge that it projects onto and faces, its normal cone widened a little:
 //!   faces that meet give two points.
 //! - Two corners touch along the line of their centres where it lies in both cones. The borders of
@@ -14,7 +14,7 @@
 //!   with one of them.
 //! - A centre inside the other body touches only the edge of least penetration (and those in a
 //!   reflex corner with it); from outside, edges that are seen from behind do not count.
-//! - A point of a disc or an ellipse that lies inside a sibling part counts only where an overlap
+//! - A point of a disc that lies inside a sibling part counts only where an overlap
 //!   would have no contact else.
 //! - Where polygons overlap with no corner of one in the other, their parts' least penetration (by
 //!   separating axes) is a contact; of two convex polygons no gap is deeper than that, and one is
@@ -25,8 +25,6 @@ use stickslip_lanes::{Lanes, Mask};
 use crate::geometry::contact::{Contact, Gap};
 use crate::geometry::contact_manifold::ContactManifold;
 use crate::geometry::edge_search::EdgeProjection;
-use crate::geometry::ellipse_collider::collide_ellipses;
-use crate::geometry::ellipse_contact::EllipseContact;
 use crate::geometry::pair::{FirstIds, Pair};
 use crate::geometry::placed::{Placed, may_touch};
 use crate::geometry::polygon_collider::PolygonCollider;
@@ -76,7 +74,6 @@ pub fn narrow_phase(
 pub(crate) struct NarrowPhase<const W: usize> {
     manifold: ContactManifold<W>,
     projections: Vec<EdgeProjection<W>>,
-    ellipses: Vec<EllipseContact>,
 }
 
 impl<const W: usize> NarrowPhase<W> {
@@ -111,11 +108,6 @@ impl<const W: usize> NarrowPhase<W> {
         vertices.collide_other_vertices();
         if !other.edges.is_empty() {
             vertices.collide_object_vertices();
-        }
-
-        // ellipses
-        if !object.ellipses.is_empty() || !other.ellipses.is_empty() {
-            collide_ellipses(pair, ids.ellipses, active, &mut self.ellipses, manifold);
         }
 
         // overlaps that no feature shows

@@ -8,7 +8,6 @@
 use crate::geometry::cluster::Cluster;
 use crate::geometry::convex_part::ConvexPart;
 use crate::geometry::edge::Edge;
-use crate::geometry::ellipse::Ellipse;
 use crate::geometry::normal_cone::NormalCone;
 use crate::geometry::part::Part;
 use crate::geometry::piece::Piece;
@@ -20,7 +19,6 @@ use crate::geometry::vec2::{cross, length, sub};
 pub(crate) struct Outline {
     pub edges: Vec<Edge>,
     pub vertices: Vec<RoundedVertex>,
-    pub ellipses: Vec<Ellipse>,
     /// Several for a convex polygon with many corners, else one of all edges and vertices.
     pub clusters: Vec<Cluster>,
 }
@@ -37,7 +35,14 @@ impl Outline {
             ..Self::default()
         };
         for (i, part) in parts.iter().enumerate() {
-            outline.push_smooth(part, &convex[i], is_covered(i, convex, tolerance));
+            if let Part::Disc { radius, centre } = part {
+                outline.vertices.push(RoundedVertex {
+                    centre: *centre,
+                    radius: *radius,
+                    cone: NormalCone::full(),
+                    covered: is_covered(i, convex, tolerance),
+                });
+            }
         }
         // the corners of a convex polygon follow each other as its edges do
         let (edges, vertices) = (outline.edges.len(), outline.vertices.len());
@@ -46,22 +51,6 @@ impl Outline {
             _ => vec![Cluster::of_all(edges.max(vertices))],
         };
         outline
-    }
-
-    fn push_smooth(&mut self, part: &Part, convex: &ConvexPart, covered: bool) {
-        match (part, convex) {
-            (Part::Disc { radius, centre }, _) => self.vertices.push(RoundedVertex {
-                centre: *centre,
-                radius: *radius,
-                cone: NormalCone::full(),
-                covered,
-            }),
-            (_, ConvexPart::Ellipse(ellipse)) => self.ellipses.push(Ellipse {
-                covered,
-                ..*ellipse
-            }),
-            _ => {}
-        }
     }
 }
 

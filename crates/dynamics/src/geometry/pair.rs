@@ -60,8 +60,6 @@ pub(crate) struct FirstIds {
     pub vertices: u32,
     /// A vertex of the object, an edge of the other.
     pub other_edges: u32,
-    /// An ellipse of either.
-    pub ellipses: u32,
 }
 
 impl FirstIds {
@@ -70,11 +68,9 @@ impl FirstIds {
         let (object, other) = (pair.object.shape.outline(), pair.other.shape.outline());
         let vertices = other.vertices.len() * object.edges.len();
         let other_edges = vertices + other.vertices.len() * object.vertices.len();
-        let ellipses = other_edges + object.vertices.len() * other.edges.len();
         Self {
             vertices: vertices as u32,
             other_edges: other_edges as u32,
-            ellipses: ellipses as u32,
         }
     }
 }

@@ -21,18 +21,40 @@ pub enum Part {
         /// Centre (m).
         centre: [f64; 2],
     },
-    /// Ellipse.
-    Ellipse {
-        /// Half lengths of the two axes (m).
-        semi_axes: [f64; 2],
-        /// Centre (m).
-        centre: [f64; 2],
-        /// Angle of the first axis (rad).
-        angle: f64,
-    },
 }
 
+/// Corners of the polygon that stands for an ellipse. More make contacts with straight edges slow:
+/// some corners within 0.1 rad of an edge touch it.
+const ELLIPSE_CORNERS: u32 = 128;
+
 impl Part {
+    /// The polygon of 128 corners that stands for an ellipse.
+    ///
+    /// `semi_axes` are the half lengths of its two axes (m), positive; `angle` (rad) is that of the
+    /// first one. The polygon has the ellipse's centre and area. Its moment of inertia agrees to
+    /// 1 part in 10⁷. Its boundary lies at most 0.02 % of the longer semi-axis outside the
+    /// ellipse, and at most 0.01 % inside.
+    ///
+    /// ```
+    /// # use stickslip_dynamics::{Part, Shape};
+    /// let plate = Shape::new(vec![Part::ellipse([0.03, 0.02], [0.0, 0.01], 0.5)])?;
+    /// # Ok::<(), stickslip_dynamics::ShapeError>(())
+    /// ```
+    pub fn ellipse(semi_axes: [f64; 2], centre: [f64; 2], angle: f64) -> Self {
+        let turn = std::f64::consts::TAU / f64::from(ELLIPSE_CORNERS);
+        // the corners of the unit circle's polygon lie so far out that its area is π
+        let outset = (turn / libm::sin(turn)).sqrt();
+        let (sin, cos) = libm::sincos(angle);
+        let corner = |k: u32| {
+            let (y, x) = libm::sincos(turn * f64::from(k));
+            let [u, v] = [outset * semi_axes[0] * x, outset * semi_axes[1] * y];
+            [centre[0] + cos * u - sin * v, centre[1] + sin * u + cos * v]
+        };
+        Self::Polygon {
+            vertices: (0..ELLIPSE_CORNERS).map(corner).collect(),
+        }
+    }
+
     /// Largest distance of its points from the frame's origin (m).
     pub(crate) fn bounding_radius(&self) -> f64 {
         match self {
@@ -41,11 +63,6 @@ impl Part {
                 .map(|v| v[0].hypot(v[1]))
                 .fold(0.0, f64::max),
             Part::Disc { radius, centre } => radius + centre[0].hypot(centre[1]),
-            Part::Ellipse {
-                semi_axes: [a, b],
-                centre,
-                ..
-            } => a.max(*b) + centre[0].hypot(centre[1]),
         }
     }
 
@@ -61,11 +78,6 @@ impl Part {
                 [fold(f64::min), fold(f64::max)]
             }
             Part::Disc { radius, centre } => around(centre, *radius),
-            Part::Ellipse {
-                semi_axes: [a, b],
-                centre,
-                ..
-            } => around(centre, a.max(*b)),
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Planar shapes: unions of discs, convex polygons and ellipses, checked once at [`Shape::new`].
+//! Planar shapes: unions of discs and convex polygons, checked once at [`Shape::new`].
 
 use stickslip_lanes::{Lanes, Mask};
 
@@ -60,8 +60,7 @@ impl Shape {
         &self.parts
     }
 
-    /// Radius of the smallest disc about the frame's origin that holds the shape (m); of an ellipse
-    /// off the origin, a bound.
+    /// Radius of the smallest disc about the frame's origin that holds the shape (m).
     pub fn bounding_radius(&self) -> f64 {
         self.bounding_radius
     }

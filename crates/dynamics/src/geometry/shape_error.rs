@@ -8,7 +8,7 @@ use crate::geometry::vec2::{Vec2, cross, dot, length, sub};
 #[non_exhaustive]
 pub enum ShapeError {
     /// No part.
-    #[error("the shape has no parts; give at least one polygon, disc or ellipse")]
+    #[error("the shape has no parts; give at least one polygon or disc")]
     Empty,
     /// A number is NaN or infinite.
     #[error(
@@ -22,21 +22,19 @@ pub enum ShapeError {
         /// The value found.
         value: f64,
     },
-    /// A radius or semi-axis is not positive.
+    /// A radius is not positive.
     #[error(
-        "part {part}: {what} is {value} m; it must be positive. Give the half width of the part in metres"
+        "part {part}: the radius is {radius} m; it must be positive. Give the half width of the part in metres"
     )]
     Size {
         /// The part.
         part: usize,
-        /// Name of the number.
-        what: String,
-        /// The value found (m).
-        value: f64,
+        /// The radius found (m).
+        radius: f64,
     },
     /// Fewer than three vertices.
     #[error(
-        "part {part} is a polygon of {vertices} vertices; it needs at least 3. Add the missing ones or use a disc or an ellipse"
+        "part {part} is a polygon of {vertices} vertices; it needs at least 3. Add the missing ones or use a disc"
     )]
     TooFewVertices {
         /// The part.
@@ -117,44 +115,22 @@ pub(crate) fn check(parts: &[Part]) -> Result<(), ShapeError> {
         .enumerate()
         .try_for_each(|(index, part)| match part {
             Part::Polygon { vertices } => check_polygon(vertices, index + 1),
-            Part::Disc { radius, centre } => {
-                check_ellipse(&[("the radius", *radius)], centre, 0.0, index + 1)
-            }
-            Part::Ellipse {
-                semi_axes: [a, b],
-                centre,
-                angle,
-            } => check_ellipse(
-                &[("the first semi-axis", *a), ("the second semi-axis", *b)],
-                centre,
-                *angle,
-                index + 1,
-            ),
+            Part::Disc { radius, centre } => check_disc(*radius, *centre, index + 1),
         })
 }
 
-fn check_ellipse(
-    sizes: &[(&str, f64)],
-    centre: &Vec2,
-    angle: f64,
-    part: usize,
-) -> Result<(), ShapeError> {
-    let others = [
-        ("x of the centre", centre[0]),
-        ("y of the centre", centre[1]),
-        ("the angle", angle),
+fn check_disc(radius: f64, [x, y]: Vec2, part: usize) -> Result<(), ShapeError> {
+    let numbers = [
+        ("the radius", radius),
+        ("x of the centre", x),
+        ("y of the centre", y),
     ];
-    for &(what, value) in sizes.iter().chain(&others) {
-        if !value.is_finite() {
-            let what = what.to_owned();
-            return Err(ShapeError::NotFinite { part, what, value });
-        }
+    if let Some((what, value)) = numbers.into_iter().find(|(_, value)| !value.is_finite()) {
+        let what = what.to_owned();
+        return Err(ShapeError::NotFinite { part, what, value });
     }
-    for &(what, value) in sizes {
-        if value <= 0.0 {
-            let what = what.to_owned();
-            return Err(ShapeError::Size { part, what, value });
-        }
+    if radius <= 0.0 {
+        return Err(ShapeError::Size { part, radius });
     }
     Ok(())
 }

@@ -54,12 +54,6 @@ pub(crate) fn cross<T: Number<S>, S: Copy>(a: Vec2<T>, b: Vec2<S>) -> T {
     a[0] * b[1] - a[1] * b[0]
 }
 
-/// `v` turned by +90°.
-#[inline(always)]
-pub(crate) fn left(v: Vec2) -> Vec2 {
-    [-v[1], v[0]]
-}
-
 /// `v` turned by −90°: the outward normal of an edge that runs along `v` with its body on the left.
 #[inline(always)]
 pub(crate) fn right(v: Vec2) -> Vec2 {

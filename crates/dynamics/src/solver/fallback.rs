@@ -5,13 +5,13 @@ use stickslip_lanes::{Lanes, Level};
 use crate::ncp::report::{Outcome, Report, Route, TOLERANCE};
 use crate::ncp::rows::Ncp;
 use crate::ncp::unknowns::Unknowns;
-use crate::solver::certifier::{Certifier, Effort, Judged};
 use crate::solver::chain::NEWTON;
 use crate::solver::compliant::CompliantNewton;
-use crate::solver::mode_search::{Verdict, search};
+use crate::solver::exhaustive::certifier::{Certifier, Effort, Judged};
+use crate::solver::exhaustive::mode_search::{Verdict, search};
+use crate::solver::exhaustive::relief::relieve;
+use crate::solver::exhaustive::scalar_ncp::{Candidate, ScalarNcp};
 use crate::solver::refiner::Refiner;
-use crate::solver::relief::relieve;
-use crate::solver::scalar_ncp::{Candidate, ScalarNcp};
 use crate::solver::smoothed_path::{CAREFUL, SmoothedPath};
 
 /// Most work spent on one problem, in linear systems.

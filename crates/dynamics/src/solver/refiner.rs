@@ -6,7 +6,7 @@ use crate::ncp::natural_map::NaturalMap;
 use crate::ncp::report::TOLERANCE;
 use crate::ncp::rows::Ncp;
 use crate::ncp::unknowns::Unknowns;
-use crate::solver::certifier::Judged;
+use crate::solver::exhaustive::certifier::Judged;
 use crate::solver::fixed_mode_newton::FixedModeNewton;
 use crate::solver::newton::{Newton, NewtonSettings};
 

@@ -113,7 +113,6 @@ impl Change {
                 radius: *radius,
                 centre: self.vector(*centre),
             },
-            (Mirror, Part::Ellipse { .. }) => panic!("no ellipse is used here"),
             (Move(_), part) => part.clone(),
         };
         Shape::new(shape.parts().iter().map(part).collect()).expect("a shape that was one before")

@@ -198,7 +198,6 @@ fn area(shape: &Shape) -> f64 {
 fn part_area(part: &Part) -> f64 {
     match part {
         Part::Disc { radius, .. } => std::f64::consts::PI * radius * radius,
-        Part::Ellipse { semi_axes, .. } => std::f64::consts::PI * semi_axes[0] * semi_axes[1],
         Part::Polygon { vertices } => {
             let next = vertices.iter().cycle().skip(1);
             0.5 * vertices

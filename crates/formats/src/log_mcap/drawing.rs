@@ -159,21 +159,15 @@ fn points_along(line: &[[f64; 2]]) -> Vec<[f64; 2]> {
 
 /// A part's boundary in the body's frame, from a point back to it.
 fn closed_line(part: &Part) -> Vec<[f64; 2]> {
-    let (semi_axes, centre, angle) = match part {
-        Part::Polygon { vertices } => {
-            return vertices.iter().chain(vertices.first()).copied().collect();
+    match part {
+        Part::Polygon { vertices } => vertices.iter().chain(vertices.first()).copied().collect(),
+        Part::Disc { radius, centre } => {
+            let side = |k: usize| {
+                let turn = std::f64::consts::TAU * (k % SIDES) as f64 / SIDES as f64;
+                let (sin, cos) = libm::sincos(turn);
+                [centre[0] + radius * cos, centre[1] + radius * sin]
+            };
+            (0..=SIDES).map(side).collect()
         }
-        Part::Disc { radius, centre } => ([*radius, *radius], *centre, 0.0),
-        Part::Ellipse {
-            semi_axes,
-            centre,
-            angle,
-        } => (*semi_axes, *centre, *angle),
-    };
-    let frame = Pose::new(centre[0], centre[1], angle);
-    let side = |k: usize| {
-        let (sin, cos) = libm::sincos(std::f64::consts::TAU * (k % SIDES) as f64 / SIDES as f64);
-        frame.transform([semi_axes[0] * cos, semi_axes[1] * sin])
-    };
-    (0..=SIDES).map(side).collect()
+    }
 }

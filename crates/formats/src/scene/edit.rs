@@ -146,17 +146,6 @@ impl SceneEdit {
                     disc.insert("centre", point(*centre));
                     table.insert("disc", disc.into());
                 }
-                Part::Ellipse {
-                    semi_axes,
-                    centre,
-                    angle,
-                } => {
-                    let mut ellipse = InlineTable::new();
-                    ellipse.insert("semi_axes", point(*semi_axes));
-                    ellipse.insert("centre", point(*centre));
-                    ellipse.insert("angle", rounded(*angle).into());
-                    table.insert("ellipse", ellipse.into());
-                }
             }
             let mut part = Value::from(table);
             part.decor_mut().set_prefix("\n  ");

@@ -100,7 +100,7 @@ pub enum SceneProblem {
     },
     /// An outline that is too fine.
     #[error(
-        "{key} has {found} {of}; at most {most} are read. Simplify the outline, or give discs and ellipses as such"
+        "{key} has {found} {of}; at most {most} are read. Simplify the outline, or give discs as such"
     )]
     TooMany {
         /// The list.

@@ -64,11 +64,6 @@ fn range(part: &Part) -> [f64; 2] {
             [ys().fold(f64::MAX, f64::min), ys().fold(f64::MIN, f64::max)]
         }
         Part::Disc { radius, centre } => [centre[1] - radius, centre[1] + radius],
-        Part::Ellipse {
-            semi_axes: [a, b],
-            centre,
-            ..
-        } => [centre[1] - a.max(*b), centre[1] + a.max(*b)],
     }
 }
 
@@ -94,22 +89,6 @@ fn cut(part: &Part, y: f64) -> Option<[f64; 2]> {
             let dy = y - centre[1];
             let half = (radius * radius - dy * dy).max(0.0).sqrt();
             (half > 0.0).then_some([centre[0] - half, centre[0] + half])
-        }
-        Part::Ellipse {
-            semi_axes: [a, b],
-            centre,
-            angle,
-        } => {
-            // m_xx dx² + 2 m_xy dx dy + m_yy dy² = 1
-            let ((sin, cos), [p, q]) = (libm::sincos(*angle), [1.0 / (a * a), 1.0 / (b * b)]);
-            let m_xx = p * cos * cos + q * sin * sin;
-            let m_xy = (p - q) * sin * cos;
-            let m_yy = p * sin * sin + q * cos * cos;
-            let dy = y - centre[1];
-            let root = m_xy * m_xy * dy * dy - m_xx * (m_yy * dy * dy - 1.0);
-            let half = root.max(0.0).sqrt() / m_xx;
-            let middle = centre[0] - m_xy * dy / m_xx;
-            (half > 0.0).then_some([middle - half, middle + half])
         }
     }
 }
@@ -174,11 +153,7 @@ mod tests {
             Plate::of(&[Part::Polygon { vertices: unit }]).mean_radius,
             0.382_597_858_232_106,
         );
-        let ellipse = Plate::of(&[Part::Ellipse {
-            semi_axes: [0.05, 0.02],
-            centre: [0.0, 0.0],
-            angle: 0.7,
-        }]);
+        let ellipse = Plate::of(&[Part::ellipse([0.05, 0.02], [0.0, 0.0], 0.7)]);
         near(ellipse.mean_square, (0.05 * 0.05 + 0.02 * 0.02) / 4.0);
     }
 

@@ -79,14 +79,12 @@ fn disc(node: &Node<'_>) -> Result<Part, SceneError> {
     })
 }
 
+/// The polygon that stands for it.
 fn ellipse(node: &Node<'_>) -> Result<Part, SceneError> {
     let table = node.table()?;
     let semi_axes = table.required("semi_axes")?.pair()?;
-    Ok(Part::Ellipse {
-        semi_axes,
-        centre: centre(&table)?,
-        angle: table.number_or("angle", 0.0)?,
-    })
+    let angle = table.number_or("angle", 0.0)?;
+    Ok(Part::ellipse(semi_axes, centre(&table)?, angle))
 }
 
 fn centre(table: &Table<'_>) -> Result<[f64; 2], SceneError> {

@@ -73,19 +73,11 @@ fn full_scene_shapes_arrive() {
     same_shape(&scene.pusher.shape, discs);
     same_shape(
         &scene.fixels[0].shape,
-        vec![Part::Ellipse {
-            semi_axes: [0.03, 0.02],
-            centre: [0.0, 0.01],
-            angle: 0.125,
-        }],
+        vec![Part::ellipse([0.03, 0.02], [0.0, 0.01], 0.125)],
     );
     same_shape(
         &scene.fixels[1].shape,
-        vec![Part::Ellipse {
-            semi_axes: [0.03, 0.02],
-            centre: [0.0, 0.0],
-            angle: 0.0,
-        }],
+        vec![Part::ellipse([0.03, 0.02], [0.0, 0.0], 0.0)],
     );
 }
 

@@ -49,11 +49,6 @@ fn set_shape_and_feet_are_read_back() {
             radius: 0.012,
             centre: [0.001, 0.002],
         },
-        Part::Ellipse {
-            semi_axes: [0.02, 0.01],
-            centre: [0.0, 0.003],
-            angle: 0.25,
-        },
     ];
     let mut edit = SceneEdit::new(SCENE, "scene.toml").unwrap();
     edit.set_shape("object", &Shape::new(parts.clone()).unwrap());

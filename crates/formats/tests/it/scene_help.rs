@@ -3,6 +3,7 @@
 use crate::scene_schema::{mismatch, schema};
 use crate::scene_text::lines::{FEET, TRIPOD, all_keys};
 use crate::scene_text::{FULL, replaced};
+use stickslip_dynamics::{Dynamics, Pose, RolloutStart, Twist};
 use stickslip_formats::{NEW_SCENE, SceneProblem, read_scene, scene_assumptions};
 
 fn by_schema(text: &str) -> Option<String> {
@@ -102,6 +103,30 @@ fn inertia_and_tripod_follow_from_the_outline_and_it_is_said() {
         "{told:?}"
     );
     assert!(scene_assumptions(FULL, "scene.toml").unwrap().is_empty());
+}
+
+#[test]
+fn ellipse_has_its_inertia_and_is_pushed() {
+    let text = NEW_SCENE.replace(
+        "polygon = [[-0.025, -0.025], [0.025, -0.025], [0.025, 0.025], [-0.025, 0.025]]",
+        "ellipse = { semi_axes = [0.03, 0.02], angle = 0.5 }",
+    );
+    let scene = read_scene(&text, "scene.toml").unwrap().scene;
+    let exact = 0.5 * (0.03 * 0.03 + 0.02 * 0.02) / 4.0;
+    assert!((scene.object.inertia / exact - 1.0).abs() < 1e-5);
+
+    let start = RolloutStart {
+        pose: Pose::default(),
+        twist: Twist::default(),
+        friction: scene.nominal,
+    };
+    let pushers: Vec<Pose> = (0..=30)
+        .map(|k| Pose::new(-0.04 + 1e-3 * f64::from(k), 0.0, 0.0))
+        .collect();
+    let rollout = Dynamics::new(scene)
+        .rollout(1.0 / 30.0, &[start], &pushers)
+        .unwrap();
+    assert!(rollout.poses.last().unwrap().x > 0.01, "{rollout:?}");
 }
 
 #[test]

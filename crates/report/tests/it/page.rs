@@ -3,9 +3,10 @@
 
 use crate::common::{experiment, log, setup, truth};
 use serde_json::Value;
+use stickslip::Log;
 use stickslip::dynamics::Twist;
 use stickslip_evaluation::Variant;
-use stickslip_report::{Block, Outcome, Report, ReportedExperiment, Section, Story, Table};
+use stickslip_report::{Block, Report, ReportedExperiment, Section, Table};
 
 const HOSTILE: &str = "</script><script>alert(1)</script> \"'<b>&amp; http://example.org";
 
@@ -87,35 +88,30 @@ fn the_camera_is_off_from_the_last_pose_on() {
         log.object[row] = None;
     }
     // rows are hidden from 54 on
-    let story = experiment("gaps", &setup, &log, 5).story();
-    assert_eq!(story.lost, 2);
-    assert_eq!(story.off, Some([log.time[49], log.time[89]]));
+    let said = experiment("gaps", &setup, &log, 5).sentences();
+    assert_eq!(
+        said[1].text,
+        "The camera turns off at 1.6 s, 0.2 s before the object touches a fixel, and stays off. \
+         It also gives no pose in 2 of the 50 other rows."
+    );
 }
 
 #[test]
-fn of_several_methods_with_the_camera_on_each_is_named() {
-    let outcome = |name: &str, wmse: f64| Outcome {
-        name: format!("{name}, camera on"),
-        camera_on: true,
-        wmse_mm: Some(wmse),
+fn camera_that_is_on_or_loses_the_object_is_said_so() {
+    let (setup, mut log) = (setup(), log(90));
+    let said = |log: &Log, latency: f64| {
+        let mut experiment = experiment("on", &setup, log, 5);
+        experiment.hidden.fill(false);
+        experiment.reference.latency = latency;
+        experiment.sentences()[1].text.clone()
     };
-    let story = |outcomes: &[Outcome]| Story {
-        outcomes: outcomes.to_vec(),
-        ..Story::default()
-    };
-    let both = [
-        outcome("Kalman filter", 2.47),
-        outcome("particle filter", 0.12),
-    ];
+    assert_eq!(said(&log, 0.0), "The camera is on all the time.");
+    log.object[20..23].fill(None);
     assert_eq!(
-        story(&both).seen().as_deref(),
-        Some("Camera always on: particle filter (0.12 mm), Kalman filter (2.47 mm).")
+        said(&log, 0.16),
+        "No row is occluded on purpose. The camera gives no pose in 3 of 90 rows. \
+         The camera lags by 0.16 s: its poses and errors are drawn at the times of exposure."
     );
-    assert_eq!(
-        story(&both[..1]).seen().as_deref(),
-        Some("Camera always on: 2.47 mm.")
-    );
-    assert_eq!(story(&[]).seen(), None);
 }
 
 #[test]
@@ -161,7 +157,8 @@ fn rows_of_another_sensor_are_no_occlusion() {
     }
     let experiment = experiment("mixed", &setup, &log, 5);
     // before the second pose nothing tells how often they come
-    assert_eq!(experiment.story().lost, 2);
+    let said = &experiment.sentences()[1].text;
+    assert!(said.contains("no pose in 2 of the 54 other rows"), "{said}");
     let report = Report {
         sections: vec![experiment.section()],
         ..Report::default()
@@ -257,8 +254,10 @@ fn one_line_says_what_is_known_of_friction() {
     let (setup, log) = (setup(), log(60));
     let mut experiment = experiment("test", &setup, &log, 5);
     let line = |experiment: &ReportedExperiment<'_>| {
-        let learnt = experiment.story().learnt;
-        let mut lines = learnt.into_iter().filter(|line| line.contains("Friction"));
+        let all = experiment.sentences().into_iter();
+        let mut lines = all
+            .map(|sentence| sentence.text)
+            .filter(|line| line.contains("Friction"));
         (lines.next().unwrap(), lines.next())
     };
     let (unknown, none) = (

@@ -72,12 +72,6 @@ fn spread(shape: &Shape, count: usize, seed: u64) -> Vec<[f64; 2]> {
 }
 
 fn contains(part: &Part, [x, y]: [f64; 2]) -> bool {
-    let in_ellipse = |[cx, cy]: [f64; 2], [a, b]: [f64; 2], angle: f64| {
-        let (sin, cos) = libm::sincos(angle);
-        let (dx, dy) = (x - cx, y - cy);
-        let (u, v) = ((cos * dx + sin * dy) / a, (cos * dy - sin * dx) / b);
-        u * u + v * v <= 1.0
-    };
     match part {
         Part::Polygon { vertices } => {
             let next = vertices.iter().cycle().skip(1);
@@ -86,12 +80,10 @@ fn contains(part: &Part, [x, y]: [f64; 2]) -> bool {
                 .zip(next)
                 .all(|([ax, ay], [bx, by])| (bx - ax) * (y - ay) - (by - ay) * (x - ax) >= 0.0)
         }
-        Part::Disc { radius, centre } => in_ellipse(*centre, [*radius; 2], 0.0),
-        Part::Ellipse {
-            semi_axes,
-            centre,
-            angle,
-        } => in_ellipse(*centre, *semi_axes, *angle),
+        Part::Disc { radius, centre } => {
+            let (u, v) = ((x - centre[0]) / radius, (y - centre[1]) / radius);
+            u * u + v * v <= 1.0
+        }
     }
 }
 
@@ -278,11 +270,7 @@ mod tests {
 
     #[test]
     fn ellipses_are_filled_in_their_own_axes() {
-        let ellipse = shape(vec![Part::Ellipse {
-            semi_axes: [0.04, 0.01],
-            centre: [0.0; 2],
-            angle: 0.5,
-        }]);
+        let ellipse = shape(vec![Part::ellipse([0.04, 0.01], [0.0; 2], 0.5)]);
         let points = PressureDistribution::Face {
             points: 2000,
             unevenness: 0.0,

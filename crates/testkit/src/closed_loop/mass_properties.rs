@@ -51,10 +51,7 @@ impl MassProperties {
             Part::Polygon { vertices } => (0..vertices.len())
                 .map(|k| Self::of_triangle(vertices[k], vertices[(k + 1) % vertices.len()]))
                 .fold(Self::default(), Self::plus),
-            Part::Disc { radius, centre } => Self::of_ellipse([*radius; 2], *centre),
-            Part::Ellipse {
-                semi_axes, centre, ..
-            } => Self::of_ellipse(*semi_axes, *centre),
+            Part::Disc { radius, centre } => Self::of_disc(*radius, *centre),
         }
     }
 
@@ -69,12 +66,12 @@ impl MassProperties {
         }
     }
 
-    fn of_ellipse([a, b]: [f64; 2], [x, y]: [f64; 2]) -> Self {
-        let area = std::f64::consts::PI * a * b;
+    fn of_disc(radius: f64, [x, y]: [f64; 2]) -> Self {
+        let area = std::f64::consts::PI * radius * radius;
         Self {
             area,
             first: [area * x, area * y],
-            second: area * ((a * a + b * b) / 4.0 + x * x + y * y),
+            second: area * (radius * radius / 2.0 + x * x + y * y),
         }
     }
 }

@@ -97,13 +97,5 @@ fn support(part: &Part, direction: [f64; 2]) -> f64 {
             .map(|vertex| dot(*vertex, direction))
             .fold(f64::MIN, f64::max),
         Part::Disc { radius, centre } => dot(*centre, direction) + radius,
-        Part::Ellipse {
-            semi_axes: [a, b],
-            centre,
-            angle,
-        } => {
-            let [x, y] = Pose::new(0.0, 0.0, -angle).rotate(direction);
-            dot(*centre, direction) + libm::hypot(a * x, b * y)
-        }
     }
 }

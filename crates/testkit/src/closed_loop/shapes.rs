@@ -96,11 +96,8 @@ fn disc(radius: f64) -> Part {
 }
 
 fn ellipse(rng: &mut SplitMix64, radius: f64) -> Part {
-    Part::Ellipse {
-        semi_axes: [radius, radius * rng.within(0.3, 0.95)],
-        centre: [0.0; 2],
-        angle: rng.within(-PI, PI),
-    }
+    let semi_axes = [radius, radius * rng.within(0.3, 0.95)];
+    Part::ellipse(semi_axes, [0.0; 2], rng.within(-PI, PI))
 }
 
 fn polygon_part(rng: &mut SplitMix64, radius: f64) -> Part {
@@ -174,15 +171,6 @@ fn about_centroid(parts: &[Part]) -> ObjectShape {
             Part::Disc { radius, centre } => Part::Disc {
                 radius: *radius,
                 centre: moved(centre),
-            },
-            Part::Ellipse {
-                semi_axes,
-                centre,
-                angle,
-            } => Part::Ellipse {
-                semi_axes: *semi_axes,
-                centre: moved(centre),
-                angle: *angle,
             },
         })
         .collect();

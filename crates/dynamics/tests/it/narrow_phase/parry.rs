@@ -21,7 +21,6 @@ fn parry(part: &Part) -> (Box<dyn ParryShape>, [f64; 2]) {
             )
         }
         Part::Disc { radius, centre } => (Box::new(Ball::new(*radius)), *centre),
-        Part::Ellipse { .. } => unreachable!(),
     }
 }
 

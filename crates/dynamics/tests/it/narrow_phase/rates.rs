@@ -3,7 +3,7 @@
 
 use stickslip_dynamics::{Gap, Pose, Shape, Twist};
 
-use super::shapes::{Random, contacts, disc, ellipse, random_polygon, rectangle, shape};
+use super::shapes::{Random, contacts, disc, random_polygon, rectangle, shape};
 
 /// Half the time between the two poses of a difference (s).
 const H: f64 = 1e-6;
@@ -12,7 +12,6 @@ fn kinds(random: &mut Random) -> Vec<Shape> {
     vec![
         shape(vec![disc(0.012, [0.004, -0.002])]),
         shape(vec![random_polygon(random)]),
-        shape(vec![ellipse([0.03, 0.012], [0.002, 0.003], 0.4)]),
         shape(vec![
             rectangle([-0.02, 0.04], [-0.02, 0.005]),
             rectangle([-0.02, 0.005], [0.005, 0.04]),
@@ -20,7 +19,7 @@ fn kinds(random: &mut Random) -> Vec<Shape> {
         shape(vec![
             rectangle([-0.02, 0.02], [-0.01, 0.01]),
             disc(0.01, [-0.02, 0.0]),
-            ellipse([0.005, 0.01], [0.02, 0.0], 0.0),
+            disc(0.007, [0.02, 0.0]),
         ]),
     ]
 }
@@ -48,9 +47,9 @@ fn follow(contact: &Gap, among: &[Gap]) -> Option<f64> {
 #[test]
 fn rate_of_the_gap_is_the_speed_of_the_surfaces_along_the_normal() {
     let mut random = Random(1);
-    let mut checked = [[0; 5]; 5];
+    let mut checked = [[0; 4]; 4];
     for _ in 0..3000 {
-        let (i, j) = (random.below(5), random.below(5));
+        let (i, j) = (random.below(4), random.below(4));
         let (object, other) = (&kinds(&mut random)[i], &kinds(&mut random)[j]);
         let poses = [random.pose(0.04), random.pose(0.04)];
         let twists = [random_twist(&mut random), random_twist(&mut random)];
@@ -91,7 +90,7 @@ fn contact_points_lie_on_both_boundaries() {
     let mut random = Random(2);
     let dot = shape(vec![disc(1e-9, [0.0; 2])]);
     for _ in 0..2000 {
-        let (i, j) = (random.below(5), random.below(5));
+        let (i, j) = (random.below(4), random.below(4));
         let (object, other) = (&kinds(&mut random)[i], &kinds(&mut random)[j]);
         let poses = [random.pose(0.04), random.pose(0.04)];
         for contact in contacts((object, poses[0]), (other, poses[1]), 0.01)

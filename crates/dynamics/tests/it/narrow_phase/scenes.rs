@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use stickslip_dynamics::{Part, Pose, Shape};
 
-use super::shapes::{Random, contacts, disc, ellipse, polygon, shape, smallest};
+use super::shapes::{Random, contacts, disc, polygon, shape, smallest};
 
 fn scene_files(folder: &Path, found: &mut Vec<PathBuf>) {
     for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
@@ -51,17 +51,11 @@ fn parts(list: &str) -> Vec<Part> {
         match kind.trim() {
             "polygon" => Some(polygon(numbers(rest).as_chunks().0)),
             "disc" => Some(disc(key("radius")[0], centre)),
-            "ellipse" => Some(ellipse(
-                [key("semi_axes")[0], key("semi_axes")[1]],
-                centre,
-                key("angle").first().copied().unwrap_or(0.0),
-            )),
             _ => None,
         }
     };
-    // a part opens with one of its three keys; discs and ellipses open an inner table that belongs
-    // to them
-    let mut starts: Vec<usize> = ["polygon", "disc", "ellipse"]
+    // a part opens with one of its two keys; discs open an inner table that belongs to them
+    let mut starts: Vec<usize> = ["polygon", "disc"]
         .iter()
         .flat_map(|key| list.match_indices(key))
         .map(|(k, _)| k)

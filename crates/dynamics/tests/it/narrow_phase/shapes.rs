@@ -49,14 +49,6 @@ pub fn disc(radius: f64, centre: [f64; 2]) -> Part {
     Part::Disc { radius, centre }
 }
 
-pub fn ellipse(semi_axes: [f64; 2], centre: [f64; 2], angle: f64) -> Part {
-    Part::Ellipse {
-        semi_axes,
-        centre,
-        angle,
-    }
-}
-
 /// A convex polygon of 3 to 8 corners on an ellipse of random axes.
 pub fn random_polygon(random: &mut Random) -> Part {
     let count = 3 + random.below(6);

@@ -2,9 +2,7 @@
 
 use stickslip_dynamics::{Gap, Part, Pose, Shape};
 
-use super::shapes::{
-    Random, contacts, disc, ellipse, filleted, polygon, rectangle, same, shape, smallest,
-};
+use super::shapes::{Random, contacts, disc, filleted, polygon, rectangle, same, shape, smallest};
 
 /// A rectangle whole, cut along one seam, with a T of seams, along a diagonal, into overlapping
 /// parts, and with a nested part.
@@ -33,7 +31,7 @@ fn rectangles() -> Vec<Shape> {
             rectangle(x, y),
             rectangle([-0.01, 0.02], [-0.02, 0.01]),
             disc(0.01, [0.0; 2]),
-            ellipse([0.02, 0.01], [0.0; 2], 0.3),
+            Part::ellipse([0.02, 0.01], [0.0; 2], 0.3),
         ]),
     ]
 }
@@ -60,7 +58,6 @@ fn probes() -> Vec<Shape> {
     let parts = [
         disc(0.005, [0.0; 2]),
         disc(1e-4, [0.0; 2]),
-        ellipse([0.01, 0.004], [0.0; 2], 0.0),
         rectangle([-0.004, 0.004], [-0.02, 0.02]),
         polygon(&[[-0.003, -0.003], [0.005, -0.002], [-0.001, 0.004]]),
     ];

@@ -6,8 +6,8 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::time::Duration;
 
-use crate::pace::Help;
-use crate::parallel::lock;
+use crate::threads::pace::Help;
+use crate::threads::parallel::lock;
 
 /// Number of times that a thread looks for work before it sleeps: some 100 to 250 µs. That is
 /// longer than a filter mostly takes between two parallel loops, and than it takes to wake a

@@ -4,7 +4,7 @@
 //! g_i, α ≥ 0, a cone. Either set and cone meet, or a direction separates them. A direction that is
 //! chosen beforehand, as those of the dual basis are, need not separate them.
 
-use crate::solver::load::Load;
+use crate::solver::exhaustive::load::Load;
 use crate::solver::vector::{Vector, add_scaled, dot, norm};
 
 /// Most columns that enter.
@@ -223,10 +223,10 @@ fn least_squares(columns: &[Column]) -> Option<[f64; MOST]> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::solver::load::Slips;
-    use crate::solver::numbers::Numbers;
-    use crate::solver::scalar_ncp::ScalarFoot;
-    use crate::solver::support_friction::SupportFriction;
+    use crate::solver::exhaustive::load::Slips;
+    use crate::solver::exhaustive::numbers::Numbers;
+    use crate::solver::exhaustive::scalar_ncp::ScalarFoot;
+    use crate::solver::exhaustive::support_friction::SupportFriction;
 
     fn random_feet(numbers: &mut Numbers) -> [ScalarFoot; 3] {
         [0; 3].map(|_| ScalarFoot {

@@ -9,9 +9,9 @@ use std::ops::Range;
 use std::panic::Location;
 use std::sync::{Mutex, MutexGuard, PoisonError, TryLockError};
 
-use crate::awake;
-use crate::helpers::Helpers;
-use crate::pace;
+use crate::threads::awake;
+use crate::threads::helpers::Helpers;
+use crate::threads::pace;
 
 /// Ranges of at most this many leaves are reduced by one thread.
 const SERIAL_LEAVES: usize = 16;

@@ -1,11 +1,11 @@
 //! Search along a line or curve by halving it: [`search_path`].
 
 use crate::ncp::report::TOLERANCE;
-use crate::solver::certifier::Certifier;
-use crate::solver::generator::Generator;
-use crate::solver::interval::Interval;
-use crate::solver::mode_conditions::ModeConditions;
-use crate::solver::scalar_ncp::Candidate;
+use crate::solver::exhaustive::certifier::Certifier;
+use crate::solver::exhaustive::generator::Generator;
+use crate::solver::exhaustive::interval::Interval;
+use crate::solver::exhaustive::mode_conditions::ModeConditions;
+use crate::solver::exhaustive::scalar_ncp::Candidate;
 use crate::solver::vector::Vector;
 
 /// Widths of pieces below which their middles are tried (m/s, relative where above 1). Where an
@@ -285,7 +285,7 @@ mod tests {
     use std::f64::consts::{FRAC_PI_2, PI};
 
     use super::*;
-    use crate::solver::certifier::{Effort, Judged};
+    use crate::solver::exhaustive::certifier::{Effort, Judged};
 
     /// The line V = (x, 0, 0, 0), 0 ≤ x ≤ 6, with the condition sin(x) = level.
     struct Wave {

@@ -1,6 +1,6 @@
 //! Bounds on the velocity between two points of a curve: [`Enclosure`].
 
-use crate::solver::scalar_ncp::ScalarFoot;
+use crate::solver::exhaustive::scalar_ncp::ScalarFoot;
 use crate::solver::vector::{Vector, add_scaled, dot, norm};
 
 /// Slip below which a foot is not taken to slip (m/s, relative to v where above 1).
@@ -193,8 +193,8 @@ fn backward(factor: &[Vector<3>; 3], b: &Vector<3>) -> Vector<3> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::solver::numbers::Numbers;
-    use crate::solver::support_friction::SupportFriction;
+    use crate::solver::exhaustive::numbers::Numbers;
+    use crate::solver::exhaustive::support_friction::SupportFriction;
 
     /// Velocities at loads between two, by the solver of the feet: all within every enclosure, and
     /// where the object creeps ellipsoids are far thinner than balls.

@@ -1,11 +1,11 @@
 //! The velocities that three generators allow: [`ModeLine`].
 
-use crate::solver::generator::Generator;
-use crate::solver::interval::Interval;
-use crate::solver::mode_conditions::{Inequality, ModeConditions};
-use crate::solver::piece_search::{ModePath, Sample};
-use crate::solver::scalar_ncp::Candidate;
-use crate::solver::subspace::{Equation, independence, least_squares, null_vector};
+use crate::solver::exhaustive::generator::Generator;
+use crate::solver::exhaustive::interval::Interval;
+use crate::solver::exhaustive::mode_conditions::{Inequality, ModeConditions};
+use crate::solver::exhaustive::piece_search::{ModePath, Sample};
+use crate::solver::exhaustive::scalar_ncp::Candidate;
+use crate::solver::exhaustive::subspace::{Equation, independence, least_squares, null_vector};
 use crate::solver::vector::{Vector, add_scaled, dot, velocity};
 
 /// V = origin + x d, where the equations of three generators hold.

@@ -1,6 +1,6 @@
 //! Load that contacts have to balance: [`Load`].
 
-use crate::solver::scalar_ncp::{ScalarFoot, ScalarNcp};
+use crate::solver::exhaustive::scalar_ncp::{ScalarFoot, ScalarNcp};
 use crate::solver::vector::{Vector, add_scaled, dot, norm, velocity};
 
 /// Slip below which rounding may turn its direction (m/s, relative to V where above 1).
@@ -144,7 +144,7 @@ fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::solver::numbers::Numbers;
+    use crate::solver::exhaustive::numbers::Numbers;
 
     fn random_problem(numbers: &mut Numbers) -> ScalarNcp {
         ScalarNcp {

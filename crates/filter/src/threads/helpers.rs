@@ -5,8 +5,8 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Condvar, Mutex, PoisonError};
 use std::time::Duration;
 
-use crate::pace::Help;
-use crate::parallel::lock;
+use crate::threads::pace::Help;
+use crate::threads::parallel::lock;
 
 /// Number of times that the calling thread checks whether the others are done before it sleeps:
 /// some 100 to 250 µs. That is longer than the last piece of a loop mostly takes, and than it takes

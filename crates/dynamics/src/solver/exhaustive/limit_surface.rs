@@ -6,7 +6,7 @@
 //! has a flat facet where the object pivots about a loaded foot, whose impulse may then be any
 //! within its bound.
 
-use crate::solver::scalar_ncp::ScalarFoot;
+use crate::solver::exhaustive::scalar_ncp::ScalarFoot;
 use crate::solver::vector::{Vector, add_scaled, norm};
 
 /// Slip per unit of e up to which a foot stands.

@@ -1,6 +1,6 @@
 //! Decides whether a candidate is a solution, within a limit on work: [`Certifier`].
 
-use crate::solver::scalar_ncp::Candidate;
+use crate::solver::exhaustive::scalar_ncp::Candidate;
 use crate::solver::vector::{Vector, add_scaled, norm};
 
 /// Distance up to which V is the same (m/s).

@@ -1,6 +1,6 @@
 //! Directions along which contacts and the pusher's drive can push: [`Generator`].
 
-use crate::solver::scalar_ncp::ScalarNcp;
+use crate::solver::exhaustive::scalar_ncp::ScalarNcp;
 use crate::solver::vector::{Vector, add_scaled};
 
 /// An edge n + `sign` μ t of a contact's friction cone, or the unit vector of the stall pair

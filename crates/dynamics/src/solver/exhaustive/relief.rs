@@ -5,10 +5,10 @@
 //! all impulses at the same V, those of [`balance`] belong to at most four independent generators,
 //! and so are no larger than the load and the wedge ask for.
 
-use crate::solver::balance::{Balance, balance};
-use crate::solver::generator::Generator;
-use crate::solver::load::Load;
-use crate::solver::scalar_ncp::{Candidate, ScalarNcp};
+use crate::solver::exhaustive::balance::{Balance, balance};
+use crate::solver::exhaustive::generator::Generator;
+use crate::solver::exhaustive::load::Load;
+use crate::solver::exhaustive::scalar_ncp::{Candidate, ScalarNcp};
 use crate::solver::vector::{Vector, dot, norm};
 
 /// Speeds below this are zero, as in the certificate (m/s).

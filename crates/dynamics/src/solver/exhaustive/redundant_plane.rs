@@ -1,13 +1,13 @@
 //! The velocities that three generators allow whose equations depend on each other:
 //! [`RedundantPlane`].
 
-use crate::solver::certifier::Certifier;
-use crate::solver::generator::Generator;
-use crate::solver::interval::Interval;
-use crate::solver::mode_conditions::ModeConditions;
-use crate::solver::piece_search::{Finding, NARROWEST, Thoroughness, WIDTHS};
-use crate::solver::plane_region::PlaneRegion;
-use crate::solver::subspace::Equation;
+use crate::solver::exhaustive::certifier::Certifier;
+use crate::solver::exhaustive::generator::Generator;
+use crate::solver::exhaustive::interval::Interval;
+use crate::solver::exhaustive::mode_conditions::ModeConditions;
+use crate::solver::exhaustive::piece_search::{Finding, NARROWEST, Thoroughness, WIDTHS};
+use crate::solver::exhaustive::plane_region::PlaneRegion;
+use crate::solver::exhaustive::subspace::Equation;
 use crate::solver::vector::{Vector, dot, norm};
 
 /// The part of a plane on which impulses α ≥ 0 of three generators may balance the load, with

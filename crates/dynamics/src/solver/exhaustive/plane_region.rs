@@ -1,9 +1,9 @@
 //! The part of a plane of V = (v, y) where linear inequalities hold: [`PlaneRegion`].
 
-use crate::solver::interval::Interval;
-use crate::solver::mode_conditions::Inequality;
-use crate::solver::piece_search::FARTHEST;
-use crate::solver::subspace::Equation;
+use crate::solver::exhaustive::interval::Interval;
+use crate::solver::exhaustive::mode_conditions::Inequality;
+use crate::solver::exhaustive::piece_search::FARTHEST;
+use crate::solver::exhaustive::subspace::Equation;
 use crate::solver::vector::{Vector, add_scaled, dot, norm};
 
 /// Part of a unit vector across another below which the two are parallel.

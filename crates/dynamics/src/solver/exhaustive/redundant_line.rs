@@ -1,12 +1,12 @@
 //! The velocities that four generators allow whose equations depend on each other:
 //! [`RedundantLine`].
 
-use crate::solver::generator::Generator;
-use crate::solver::interval::Interval;
-use crate::solver::mode_conditions::ModeConditions;
-use crate::solver::mode_line::Line;
-use crate::solver::piece_search::{ModePath, Sample};
-use crate::solver::scalar_ncp::Candidate;
+use crate::solver::exhaustive::generator::Generator;
+use crate::solver::exhaustive::interval::Interval;
+use crate::solver::exhaustive::mode_conditions::ModeConditions;
+use crate::solver::exhaustive::mode_line::Line;
+use crate::solver::exhaustive::piece_search::{ModePath, Sample};
+use crate::solver::exhaustive::scalar_ncp::Candidate;
 use crate::solver::vector::Vector;
 
 /// A line on which impulses α ≥ 0 of four generators balance the load: three points of a face on

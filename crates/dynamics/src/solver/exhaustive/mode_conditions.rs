@@ -1,13 +1,13 @@
 //! Conditions that a choice of generators puts on V = (v, y): [`ModeConditions`].
 
-use crate::solver::balance::{Balance, balance};
-use crate::solver::certifier::Certifier;
-use crate::solver::generator::Generator;
-use crate::solver::interval::Interval;
-use crate::solver::load::Load;
-use crate::solver::plane_region::PlaneRegion;
-use crate::solver::scalar_ncp::{Candidate, ScalarNcp};
-use crate::solver::subspace::Equation;
+use crate::solver::exhaustive::balance::{Balance, balance};
+use crate::solver::exhaustive::certifier::Certifier;
+use crate::solver::exhaustive::generator::Generator;
+use crate::solver::exhaustive::interval::Interval;
+use crate::solver::exhaustive::load::Load;
+use crate::solver::exhaustive::plane_region::PlaneRegion;
+use crate::solver::exhaustive::scalar_ncp::{Candidate, ScalarNcp};
+use crate::solver::exhaustive::subspace::Equation;
 use crate::solver::vector::{Vector, add_scaled, dot, norm, velocity};
 
 /// Violations below this (m/s, relative to the speed scale) do not exclude a mode.

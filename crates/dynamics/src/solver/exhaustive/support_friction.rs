@@ -1,8 +1,8 @@
 //! The object on its feet alone: [`SupportFriction`].
 
 use crate::solver::elimination::solve_dense;
-use crate::solver::limit_surface::{LimitSurface, Pivot, SlipFriction};
-use crate::solver::scalar_ncp::ScalarFoot;
+use crate::solver::exhaustive::limit_surface::{LimitSurface, Pivot, SlipFriction};
+use crate::solver::exhaustive::scalar_ncp::ScalarFoot;
 use crate::solver::vector::{Vector, add_scaled, dot, norm};
 
 /// Most Newton steps: from the last slip, and from a start that leads to the solution.
@@ -378,7 +378,7 @@ fn regular(mut matrix: [Vector<3>; 3]) -> [Vector<3>; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::solver::numbers::Numbers;
+    use crate::solver::exhaustive::numbers::Numbers;
 
     /// Some of them bear nothing.
     fn random_feet(numbers: &mut Numbers) -> [ScalarFoot; 3] {

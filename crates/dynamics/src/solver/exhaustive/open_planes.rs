@@ -1,8 +1,8 @@
 //! The planes that two generators leave, before their own slips are asked for: [`OpenPlanes`].
 
-use crate::solver::generator::Generator;
-use crate::solver::mode_conditions::ModeConditions;
-use crate::solver::plane_region::PlaneRegion;
+use crate::solver::exhaustive::generator::Generator;
+use crate::solver::exhaustive::mode_conditions::ModeConditions;
+use crate::solver::exhaustive::plane_region::PlaneRegion;
 
 /// The open plane of each two contacts, or of a contact and the stall pair. Both edges of a contact
 /// ask for the same closed gap: their planes are the same.

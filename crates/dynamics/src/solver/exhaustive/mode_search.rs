@@ -15,20 +15,20 @@
 //! halving, with bounds that are rigorous on every piece: pieces without a solution are discarded,
 //! the rest is refined. If nothing remains, there is no solution.
 
-use crate::solver::certifier::Certifier;
 use crate::solver::elimination::solve_dense;
-use crate::solver::generator::Generator;
-use crate::solver::mode_conditions::{LARGEST, ModeConditions};
-use crate::solver::mode_curve::ModeCurve;
-use crate::solver::mode_line::{Line, ModeLine};
-use crate::solver::open_planes::OpenPlanes;
-use crate::solver::piece_search::{Finding, Thoroughness, search_path};
-use crate::solver::plane_region::complement;
-use crate::solver::redundant_line::RedundantLine;
-use crate::solver::redundant_plane::RedundantPlane;
-use crate::solver::scalar_ncp::{Candidate, ScalarNcp};
-use crate::solver::subspace::{DEPENDENT, dual_basis, least_squares, null_vector};
-use crate::solver::support_friction::SupportFriction;
+use crate::solver::exhaustive::certifier::Certifier;
+use crate::solver::exhaustive::generator::Generator;
+use crate::solver::exhaustive::mode_conditions::{LARGEST, ModeConditions};
+use crate::solver::exhaustive::mode_curve::ModeCurve;
+use crate::solver::exhaustive::mode_line::{Line, ModeLine};
+use crate::solver::exhaustive::open_planes::OpenPlanes;
+use crate::solver::exhaustive::piece_search::{Finding, Thoroughness, search_path};
+use crate::solver::exhaustive::plane_region::complement;
+use crate::solver::exhaustive::redundant_line::RedundantLine;
+use crate::solver::exhaustive::redundant_plane::RedundantPlane;
+use crate::solver::exhaustive::scalar_ncp::{Candidate, ScalarNcp};
+use crate::solver::exhaustive::subspace::{DEPENDENT, dual_basis, least_squares, null_vector};
+use crate::solver::exhaustive::support_friction::SupportFriction;
 use crate::solver::vector::{add_scaled, dot, velocity};
 
 /// Outcome of the search.

@@ -1,13 +1,13 @@
 //! The velocities that two generators allow: [`ModeCurve`].
 
-use crate::solver::enclosure::{Between, Enclosure, Slide};
-use crate::solver::generator::Generator;
-use crate::solver::interval::Interval;
-use crate::solver::mode_conditions::{LARGEST, ModeConditions};
-use crate::solver::piece_search::{ModePath, Sample};
-use crate::solver::scalar_ncp::Candidate;
-use crate::solver::subspace::Equation;
-use crate::solver::support_friction::SupportFriction;
+use crate::solver::exhaustive::enclosure::{Between, Enclosure, Slide};
+use crate::solver::exhaustive::generator::Generator;
+use crate::solver::exhaustive::interval::Interval;
+use crate::solver::exhaustive::mode_conditions::{LARGEST, ModeConditions};
+use crate::solver::exhaustive::piece_search::{ModePath, Sample};
+use crate::solver::exhaustive::scalar_ncp::Candidate;
+use crate::solver::exhaustive::subspace::Equation;
+use crate::solver::exhaustive::support_friction::SupportFriction;
 use crate::solver::vector::{Vector, add_scaled, dot, norm, velocity};
 
 /// Error of a velocity from [`SupportFriction`] (m/s, relative where above 1), unless its residual
