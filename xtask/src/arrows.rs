@@ -52,11 +52,14 @@ pub const CRATES: [Rules; 16] = [
         must_not_use: CHANCE_AND_THREADS,
         ..Rules::of("crates/testbed", &["crates/dynamics", "crates/filter"])
     },
-    Rules::of("crates/rendering", &["crates/dynamics", "crates/filter"]),
+    Rules::of(
+        "crates/camera/rendering",
+        &["crates/dynamics", "crates/filter"],
+    ),
     // rendered frames have a truth to be judged by; random numbers are the filter's
     Rules {
-        may_test_with: &["crates/rendering", "crates/filter"],
-        ..Rules::of("crates/vision", &["crates/dynamics"])
+        may_test_with: &["crates/camera/rendering", "crates/filter"],
+        ..Rules::of("crates/camera/vision", &["crates/dynamics"])
     },
     Rules::of(
         "crates/evaluation",
@@ -66,8 +69,6 @@ pub const CRATES: [Rules; 16] = [
             "crates/estimator",
             "crates/formats",
             "crates/testbed",
-            "crates/rendering",
-            "crates/vision",
         ],
     ),
     Rules::of(
@@ -97,8 +98,8 @@ pub const CRATES: [Rules; 16] = [
             "crates/estimator",
             "crates/formats",
             "crates/testbed",
-            "crates/rendering",
-            "crates/vision",
+            "crates/camera/rendering",
+            "crates/camera/vision",
             "crates/evaluation",
             "crates/fit",
             "crates/report",
@@ -304,8 +305,8 @@ mod tests {
             entry("stickslip-dynamics", "crates/dynamics"),
             entry("stickslip", "crates/estimator"),
             entry("stickslip-testkit", "crates/testkit"),
-            entry("stickslip-vision", "crates/vision"),
-            entry("stickslip-rendering", "crates/rendering"),
+            entry("stickslip-vision", "crates/camera/vision"),
+            entry("stickslip-rendering", "crates/camera/rendering"),
         ];
         let json = format!(
             "{{\"workspace_root\": \"/w\", \"packages\": [{}]}}",
@@ -344,10 +345,10 @@ mod tests {
 
     #[test]
     fn check_lets_some_crates_into_tests_only() {
-        assert!(found("crates/vision", "stickslip-rendering", "\"dev\"").is_empty());
+        assert!(found("crates/camera/vision", "stickslip-rendering", "\"dev\"").is_empty());
         assert_one(
-            &found("crates/vision", "stickslip-rendering", "null"),
-            "crates/vision/Cargo.toml:1: ",
+            &found("crates/camera/vision", "stickslip-rendering", "null"),
+            "crates/camera/vision/Cargo.toml:1: ",
             "must not depend on `stickslip-rendering`",
         );
         assert_one(

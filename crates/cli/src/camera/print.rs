@@ -5,10 +5,10 @@ use std::fs;
 use anyhow::{Context, Result};
 use stickslip_vision::{print_board, print_tags, read_board};
 
+use super::print_args::PrintArgs;
 use crate::failure::hinted;
 use crate::files::{ready_file, write_file};
 use crate::output::show;
-use crate::print_args::PrintArgs;
 use crate::verdict::Verdict;
 
 /// Runs the command.

@@ -8,8 +8,8 @@ use image::GrayImage;
 use stickslip_formats::read_frames;
 use stickslip_vision::read_picture;
 
+use super::frame_names::FrameNames;
 use crate::failure::hinted;
-use crate::frame_names::FrameNames;
 
 /// Endings of files that are taken for images.
 const ENDINGS: [&str; 8] = ["png", "jpg", "jpeg", "bmp", "pgm", "ppm", "pnm", "pbm"];

@@ -13,12 +13,12 @@ use stickslip_vision::{
     TrackError, read_camera, read_camera_with, read_tags, write_poses,
 };
 
-use crate::bag_images::{BagImages, TrackedBag};
-use crate::camera_args::TrackArgs;
+use super::args::TrackArgs;
+use super::bag_images::{BagImages, TrackedBag};
+use super::frames::FrameFolder;
 use crate::experiment::text_of;
 use crate::failure::hinted;
 use crate::files::{Results, ready_folder};
-use crate::frames::FrameFolder;
 use crate::log_files::LogFiles;
 use crate::output::{counted, show_result, talk};
 use crate::progress::{Work, bar};

@@ -1,18 +1,20 @@
-//! Replicates from camera frames: a [`CalibratedCamera`] films the testbed, calibrated from a
-//! board, and tracks the tags, all in memory.
+//! Replicates from camera frames, all in memory: a camera over the testbed is calibrated from a
+//! board, films, and its frames are tracked ([`filmed`]).
 
 use anyhow::{Context, Result};
 use image::GrayImage;
 use indicatif::ProgressBar;
+use rayon::prelude::*;
 use stickslip::Log;
 use stickslip::dynamics::Pose;
 use stickslip_evaluation::REPEATS;
-use stickslip_evaluation::paper::{Noise, Replicate};
+use stickslip_evaluation::paper::{Noise, NoiseLevel, PaperExperiment, Replicate};
 use stickslip_formats::{Experiment, Truth};
 use stickslip_rendering::{CaptureSettings, FrameGrabber, Optics, RecordedMotion, Video};
 use stickslip_vision::{BoardRecording, Camera, calibrate, search_board, track};
 
-use crate::camera_setup::CameraSetup;
+use super::setup::CameraSetup;
+use crate::progress::{Work, bar};
 
 /// Time that the shutter is open (s).
 const EXPOSURE: f64 = 0.008;
@@ -21,23 +23,58 @@ const BOARD_FRAMES: usize = 20;
 
 /// A camera over one experiment, calibrated once for all seeds.
 #[derive(Clone, Debug)]
-pub struct CalibratedCamera {
+struct CalibratedCamera {
     setup: CameraSetup,
     camera: Camera,
 }
 
 /// A replicate whose poses come from frames.
 #[derive(Clone, Debug)]
-pub struct Tracked {
+struct Tracked {
     /// The replicate.
-    pub replicate: Replicate,
+    replicate: Replicate,
     /// Tracked poses less true ones.
-    pub noise: Noise,
+    noise: Noise,
+}
+
+/// The replicates from frames, the same from simulated poses of equal noise, and that noise by
+/// experiment.
+pub fn filmed(
+    replicates: &[Replicate],
+) -> Result<(Vec<Replicate>, Vec<Replicate>, Vec<NoiseLevel>)> {
+    let frames = replicates.iter().map(|own| own.experiment.log.len()).sum();
+    let progress = bar(frames, "frames", Work::Long);
+    let (mut tracked, mut simulated, mut levels) = (Vec::new(), Vec::new(), Vec::new());
+    for paper in PaperExperiment::ALL {
+        // film and track all seeds before one calibrated camera
+        let own = replicates.iter().filter(|own| own.paper == paper);
+        let own: Vec<&Replicate> = own.collect();
+        let camera = CalibratedCamera::new(&own, Optics::default())?;
+        let seen: Vec<Tracked> = own
+            .par_iter()
+            .map(|replicate| camera.track(replicate, &progress))
+            .collect::<Result<_>>()?;
+
+        // simulate poses with the noise of all of them
+        let noise = seen
+            .iter()
+            .fold(Noise::default(), |sum, tracked| sum.with(tracked.noise));
+        levels.push(noise.level());
+        simulated.extend(
+            seen.par_iter()
+                .map(|tracked| tracked.replicate.with_noise(&noise))
+                .collect::<Result<Vec<_>, _>>()?,
+        );
+        let given = noise.given_camera();
+        tracked.extend(seen.into_iter().map(|seen| seen.replicate.given(given)));
+    }
+    progress.finish_and_clear();
+    Ok((tracked, simulated, levels))
 }
 
 impl CalibratedCamera {
     /// Puts a camera over an experiment with several replicates, and calibrates it.
-    pub fn new(replicates: &[&Replicate], optics: Optics) -> Result<Self> {
+    fn new(replicates: &[&Replicate], optics: Optics) -> Result<Self> {
         let scene = &replicates[0].experiment.setup.scene;
         let motions: Vec<RecordedMotion> = replicates
             .iter()
@@ -57,7 +94,7 @@ impl CalibratedCamera {
     }
 
     /// Films a replicate and tracks it.
-    pub fn track(&self, replicate: &Replicate, progress: &ProgressBar) -> Result<Tracked> {
+    fn track(&self, replicate: &Replicate, progress: &ProgressBar) -> Result<Tracked> {
         let experiment = &replicate.experiment;
         let motion = motion(replicate);
         let grabber = FrameGrabber {
@@ -98,7 +135,7 @@ impl CalibratedCamera {
 }
 
 /// The true motion of object and pusher.
-pub fn motion(replicate: &Replicate) -> RecordedMotion {
+fn motion(replicate: &Replicate) -> RecordedMotion {
     let truth = truth(replicate);
     let pusher = truth.pusher.iter().map(|pose: &Pose| Some(*pose)).collect();
     RecordedMotion {
@@ -116,7 +153,6 @@ fn truth(replicate: &Replicate) -> &Truth {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use stickslip_evaluation::paper::PaperExperiment;
 
     /// The first rows of a replicate.
     fn beginning(replicate: &Replicate, rows: usize) -> Replicate {

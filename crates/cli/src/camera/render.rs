@@ -14,9 +14,9 @@ use stickslip_rendering::{
 };
 use stickslip_vision::{BoardOnTable, write_board, write_tags};
 
+use super::args::RenderArgs;
+use super::setup::CameraSetup;
 use crate::arg_values::Rows;
-use crate::camera_args::RenderArgs;
-use crate::camera_setup::CameraSetup;
 use crate::experiment::{read_folder, reference_name};
 use crate::failure::hinted;
 use crate::files::{make_folder, write_out};

@@ -11,12 +11,12 @@ use stickslip_vision::{
     read_lens, search_board, write_camera,
 };
 
-use crate::bag_images::BagImages;
-use crate::camera_args::CalibrateArgs;
+use super::args::CalibrateArgs;
+use super::bag_images::BagImages;
+use super::frames::FrameFolder;
 use crate::experiment::text_of;
 use crate::failure::hinted;
 use crate::files::{ready_file, write_file};
-use crate::frames::FrameFolder;
 use crate::output::{counted, show_result, talk};
 use crate::progress::{Work, bar};
 use crate::verdict::Verdict;
