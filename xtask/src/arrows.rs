@@ -23,13 +23,16 @@ pub struct Rules {
 /// Only tests may use it, with any crate's `[dev-dependencies]`.
 const TESTKIT: &str = "crates/testkit";
 
+/// Off the program: its own binaries, tests and benchmarks use it.
+const EXPERIMENTS: &str = "crates/experiments";
+
 /// Randomness and threads: not for crates that are pure functions of one thread.
 const CHANCE_AND_THREADS: &[&str] = &["rand", "rand_distr", "rand_core", "rayon"];
 
 /// The workspace. Arrows run one way: bytes, formats, estimator, then filter and dynamics, then
 /// lanes, which depends on no other crate. Testbed, rendering and vision stand next to the
 /// estimator, and evaluation brings all together.
-pub const CRATES: [Rules; 16] = [
+pub const CRATES: [Rules; 17] = [
     Rules {
         must_not_use: CHANCE_AND_THREADS,
         ..Rules::of("crates/lanes", &[])
@@ -116,20 +119,32 @@ pub const CRATES: [Rules; 16] = [
             "crates/cli",
         ],
     ),
+    Rules::of(TESTKIT, &["crates/dynamics"]),
     Rules::of(
-        TESTKIT,
-        &["crates/dynamics", "crates/estimator", "crates/formats"],
-    ),
-    Rules::of(
-        "crates/bench",
+        EXPERIMENTS,
         &[
-            "crates/lanes",
             "crates/dynamics",
             "crates/filter",
             "crates/estimator",
             "crates/formats",
+            "crates/evaluation",
+            TESTKIT,
         ],
     ),
+    // recorded experiments
+    Rules {
+        may_test_with: &[EXPERIMENTS],
+        ..Rules::of(
+            "crates/bench",
+            &[
+                "crates/lanes",
+                "crates/dynamics",
+                "crates/filter",
+                "crates/estimator",
+                "crates/formats",
+            ],
+        )
+    },
     Rules::of("xtask", &[]),
 ];
 

@@ -7,7 +7,7 @@ use stickslip_dynamics::{Fixel, Part, Pose, Shape};
 use super::placement::{Side, Standing};
 use super::scene_kind::SceneKind;
 use super::shapes::{self, ObjectShape};
-use crate::rng::SplitMix64;
+use stickslip_testkit::SplitMix64;
 
 /// Most fixels of a scene.
 const MOST_FIXELS: usize = 6;

@@ -9,9 +9,9 @@ use stickslip::{FilterModel, Observer, RunError, RunOptions, SolvedStep, run_obs
 use stickslip_dynamics::{Outcome, StepProblem, StepSolution};
 
 use crate::recorded_case::RecordedCase;
-use crate::rng::{SplitMix64, mix};
-use crate::speed_limit::judged_residual;
-use crate::survey::{Tally, judge};
+use stickslip_testkit::judged_residual;
+use stickslip_testkit::{SplitMix64, mix};
+use stickslip_testkit::{Tally, judge};
 
 /// Most particles of a harvest: one block, whose steps come in a fixed order, so that the same ones
 /// are kept each time.

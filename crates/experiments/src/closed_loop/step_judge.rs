@@ -13,8 +13,8 @@ use stickslip_dynamics::{
 use super::block_timer::{BlockTimer, LANES};
 use super::existence::Existence;
 use super::loop_tally::{LoopTally, StepAddress, remember};
-use crate::speed_limit::judged_residual;
-use crate::survey::Tally;
+use stickslip_testkit::Tally;
+use stickslip_testkit::judged_residual;
 
 /// Of the steps that the Newton iteration solved, one in so many is checked.
 const CHECK_ONE_IN: u64 = 50;

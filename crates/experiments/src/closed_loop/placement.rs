@@ -2,7 +2,7 @@
 
 use stickslip_dynamics::{Part, Placed, Pose, Shape, narrow_phase};
 
-use crate::vector::{dot, left};
+use stickslip_testkit::{dot, left};
 
 /// Steps from far away to the object's centre in which the first overlap is looked for.
 const MARCH: usize = 200;

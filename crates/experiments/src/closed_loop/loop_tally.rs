@@ -3,7 +3,7 @@
 use std::fmt;
 use std::time::Duration;
 
-use crate::survey::Tally;
+use stickslip_testkit::Tally;
 
 /// Address of a particle-step among all scenes of a seed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use stickslip_testkit::{ClosedLoop, LoopTally, SceneKind, SceneRun};
+use stickslip_experiments::{ClosedLoop, LoopTally, SceneKind, SceneRun};
 
 const LOOP: ClosedLoop = ClosedLoop {
     seed: 1,

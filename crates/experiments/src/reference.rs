@@ -5,10 +5,8 @@ use stickslip::{
     Estimate, FilterModel, Moves, RunError, RunOptions, Tracking, quantile, run, wrapped,
 };
 
-use crate::paper::{Replicate, RunSettings};
-use crate::run::ScoredRun;
-use crate::score::Scores;
-use crate::variant::Variant;
+use stickslip_evaluation::paper::{Replicate, RunSettings};
+use stickslip_evaluation::{ScoredRun, Scores, Variant};
 
 /// Two runs over the same experiment with touch, its camera off as the experiment says. One has a
 /// few particles, as the program runs them. The reference has many particles, which weighing alone

@@ -1,6 +1,6 @@
-//! `cargo run --release -p stickslip-testkit --bin harvest [-- DIR...]`: the particle filter over
-//! every recorded experiment, by default all of `STICKSLIP_DATA`, with every step judged by the
-//! independent residual; then a sample of the steps as hard problems of their own. Exits with 1
+//! `cargo run --release -p stickslip-experiments --bin harvest [-- DIR...]`: the particle filter
+//! over every recorded experiment, by default all of `STICKSLIP_DATA`, with every step judged by
+//! the independent residual; then a sample of the steps as hard problems of their own. Exits with 1
 //! where a step failed, a residual exceeds 1e-9 m/s, or a proof of infeasibility contradicts a
 //! known solution.
 
@@ -10,9 +10,10 @@ use std::process::ExitCode;
 
 use rayon::prelude::*;
 use stickslip::Occlusion;
-use stickslip_testkit::{
-    Harvest, HarvestOptions, RecordedCase, Tally, data_root, harvest, recorded_cases, survey_steps,
+use stickslip_experiments::{
+    Harvest, HarvestOptions, RecordedCase, harvest, recorded_cases, survey_steps,
 };
+use stickslip_testkit::{Tally, data_root};
 
 const OPTIONS: HarvestOptions = HarvestOptions {
     particles: 32,

@@ -11,7 +11,7 @@ use stickslip_dynamics::{Feet, Fixel, Friction, Object, Pose, Pusher, Scene};
 use super::layout::Layout;
 use super::pusher_path::PusherPath;
 use super::scene_kind::SceneKind;
-use crate::rng::SplitMix64;
+use stickslip_testkit::SplitMix64;
 
 const GRAVITY: f64 = 9.81;
 

@@ -1,7 +1,7 @@
 //! Coverage of the filter's 90 % intervals over experiments whose friction is drawn from the prior:
 //!
 //! ```text
-//! cargo run --release -p stickslip-evaluation --bin calibration [RUNS [PARTICLES]] [KEY=VALUE]...
+//! cargo run --release -p stickslip-experiments --bin calibration [RUNS [PARTICLES]] [KEY=VALUE]...
 //! ```
 //!
 //! The object is moved by the filter's own noisy dynamics, by these without noise, and by the
@@ -16,9 +16,9 @@ use std::error::Error;
 
 use stickslip::{FilterModel, Uncertainty};
 use stickslip_evaluation::paper::PaperExperiment;
-use stickslip_evaluation::{
-    CalibrationOptions, CalibrationRun, Observed, Physics, QUANTITIES, RankTally, Tally,
-    TruthSource, Variant,
+use stickslip_evaluation::{Physics, Variant};
+use stickslip_experiments::{
+    CalibrationOptions, CalibrationRun, Observed, QUANTITIES, RankTally, Tally, TruthSource,
 };
 use stickslip_formats::read_scene;
 

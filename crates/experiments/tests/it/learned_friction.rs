@@ -1,9 +1,8 @@
 //! Friction that runs say they have observed, against truths that are drawn and known.
 
 use stickslip::{FilterModel, Uncertainty};
-use stickslip_evaluation::{
-    CalibrationOptions, CalibrationRun, Physics, Placed, TruthSource, Variant,
-};
+use stickslip_evaluation::{Physics, Variant};
+use stickslip_experiments::{CalibrationOptions, CalibrationRun, Placed, TruthSource};
 
 /// μ_p and μ_f among the quantities of a run.
 const CONTACTS: [usize; 2] = [4, 5];

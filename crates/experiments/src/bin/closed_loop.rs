@@ -2,7 +2,7 @@
 //! judged:
 //!
 //! ```text
-//! cargo run --release -p stickslip-testkit --bin closed_loop
+//! cargo run --release -p stickslip-experiments --bin closed_loop
 //!     [SCENES] [SEED] [--frames FRAMES] [--only INDEX]
 //! ```
 //!
@@ -14,10 +14,10 @@ use std::io::{self, Write};
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use stickslip_testkit::{
+use stickslip_experiments::{
     ClosedLoop, Existence, LoopTally, NotedStep, PusherPoses, SceneKind, SceneRun, StepAddress,
-    residual_rows_si,
 };
+use stickslip_testkit::residual_rows_si;
 
 const USAGE: &str =
     "usage: closed_loop [SCENES] [SEED] [--frames FRAMES] [--only INDEX], all whole numbers";

@@ -1,4 +1,4 @@
-//! `cargo run --release -p stickslip-evaluation --bin reference [PARTICLES [MANY [SEEDS]]]`:
+//! `cargo run --release -p stickslip-experiments --bin reference [PARTICLES [MANY [SEEDS]]]`:
 //! agreement of 500 particles with a million on the same data.
 //!
 //! It runs the paper's experiments as the testbed simulates them, with touch, while the camera is
@@ -7,8 +7,8 @@
 
 use std::error::Error;
 
-use stickslip_evaluation::Agreement;
 use stickslip_evaluation::paper::{PaperExperiment, Replicate};
+use stickslip_experiments::Agreement;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let numbers: Result<Vec<usize>, _> = std::env::args().skip(1).map(|n| n.parse()).collect();

@@ -4,9 +4,8 @@
 use std::path::Path;
 
 use rayon::prelude::*;
-use stickslip_testkit::{
-    Harvest, HarvestOptions, data_root, harvest, recorded_cases, survey_steps,
-};
+use stickslip_experiments::{Harvest, HarvestOptions, harvest, recorded_cases, survey_steps};
+use stickslip_testkit::data_root;
 
 const OPTIONS: HarvestOptions = HarvestOptions {
     particles: 8,

@@ -2,10 +2,10 @@
 
 use stickslip_dynamics::{StepProblem, StepSolution};
 
-use crate::jam::{gap_margin, is_solvable};
-use crate::modes::enumerate_modes;
-use crate::residual::residual_si;
-use crate::speed_limit::is_sought;
+use stickslip_testkit::enumerate_modes;
+use stickslip_testkit::is_sought;
+use stickslip_testkit::residual_si;
+use stickslip_testkit::{gap_margin, is_solvable};
 
 /// Largest residual of a solution (m/s).
 const TOLERANCE: f64 = 1e-9;

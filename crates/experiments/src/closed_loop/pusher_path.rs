@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use stickslip_dynamics::Pose;
 
-use crate::rng::SplitMix64;
+use stickslip_testkit::SplitMix64;
 
 /// Commanded motion of a pusher.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

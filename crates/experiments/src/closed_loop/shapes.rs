@@ -5,7 +5,7 @@ use std::f64::consts::{PI, TAU};
 use stickslip_dynamics::{Part, Shape};
 
 use super::mass_properties::MassProperties;
-use crate::rng::SplitMix64;
+use stickslip_testkit::SplitMix64;
 
 /// Shortest and longest radius of an object (m).
 const OBJECT_RADIUS: [f64; 2] = [10e-3, 60e-3];

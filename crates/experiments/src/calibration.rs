@@ -8,14 +8,13 @@ use stickslip::{
     FilterModel, Observer, ParticleView, PriorSample, SampledState, Setup, SolvedStep, Tracking,
     Uncertainty, wrapped,
 };
+use stickslip_evaluation::paper::PaperExperiment;
+use stickslip_evaluation::{
+    LearnedParameter, PUSHER_MEMORY, Physics, REPEATS, RunConditions, ScoredRun, Simulation,
+    SimulationOptions, Variant,
+};
 use stickslip_filter::{Purpose, Streams};
 use stickslip_formats::{Experiment, TruthFacts, read_scene};
-
-use crate::learned_friction::LearnedParameter;
-use crate::paper::PaperExperiment;
-use crate::run::{RunConditions, ScoredRun};
-use crate::simulation::{PUSHER_MEMORY, Physics, REPEATS, Simulation, SimulationOptions};
-use crate::variant::Variant;
 
 /// Quantities of a run: the pose at its end, the four friction parameters.
 pub const QUANTITIES: [&str; 7] = ["x", "y", "theta", "mu_s", "mu_p", "mu_f", "d_tri"];

@@ -1,7 +1,7 @@
 //! Ablation of the robust model: whole, and with each of its ingredients left out.
 //!
 //! ```text
-//! cargo run --release -p stickslip-cli --example ablation SEEDS FOLDER...
+//! cargo run --release -p stickslip-experiments --bin ablation SEEDS FOLDER...
 //! ```
 //!
 //! It runs 500 particles on all experiments in some folders (scene.toml, log.csv, truth.csv,
@@ -14,7 +14,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use stickslip::{Occlusion, RunOptions, quantile, run};
-use stickslip_evaluation::{Ingredient, ScoredRun, Variant};
+use stickslip_evaluation::{ScoredRun, Variant};
+use stickslip_experiments::Ingredient;
 use stickslip_formats::{Experiment, read_log, read_scene, read_truth_csv, read_truth_json};
 
 fn main() -> Result<(), Box<dyn Error>> {

@@ -9,7 +9,7 @@ use stickslip_dynamics::{
 };
 
 use super::random_scene::{PusherPoses, RandomScene};
-use crate::rng::SplitMix64;
+use stickslip_testkit::SplitMix64;
 
 /// An object farther than this from its start has flown off, and the log ends (m).
 const FARTHEST: f64 = 1.0;

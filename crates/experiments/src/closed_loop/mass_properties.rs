@@ -2,7 +2,7 @@
 
 use stickslip_dynamics::Part;
 
-use crate::vector::cross;
+use stickslip_testkit::cross;
 
 /// Integrals over an area.
 #[derive(Clone, Copy, Debug, Default)]
