@@ -20,15 +20,16 @@ pub struct Uncertainty {
     /// Standard deviation of a constant offset between the camera's frame and the pusher's, on each
     /// axis (m).
     pub pusher_offset: f64,
-    /// Standard deviation of the distance of a pusher that a jam holds back behind its logged pose
-    /// (m).
+    /// Distance by which a jam holds a pusher back behind its logged pose before it stops, in terms
+    /// of its Rayleigh scale, where the drive is soft (m). On the smoother half of rigs it is
+    /// `well_measured` times as long.
     pub pusher_lag: f64,
     /// Standard deviation of the error of each fixel's position, on each axis (m).
     pub fixel_position: f64,
     /// Standard deviation of the logarithm of a factor of these offsets: rigs differ.
     pub roughness: f64,
-    /// Factor on the smoother half of rigs of `fixel_position` and, while the camera is off,
-    /// `force_std`. Its fourth root is the factor of `pusher_offset`. A value below
+    /// Factor on the smoother half of rigs of `fixel_position`, `pusher_lag` and, while the camera is
+    /// off, `force_std`. Its fourth root is the factor of `pusher_offset`. A value below
     /// 1 means that some rigs are measured much better than others.
     pub well_measured: f64,
     /// Standard deviation of the logarithm by which the camera's noise differs from its nominal
@@ -59,7 +60,7 @@ impl Default for Uncertainty {
             tripod_angle: ANY_ANGLE,
             force_std: 0.25,
             pusher_offset: 3e-4,
-            pusher_lag: 3e-4,
+            pusher_lag: 3e-3,
             fixel_position: 3e-4,
             roughness: 0.5,
             well_measured: 0.1,
@@ -94,8 +95,8 @@ impl Uncertainty {
         }
     }
 
-    /// b of docs/model.md (36), the factor of `fixel_position` and, while the camera is off,
-    /// `force_std`. The logarithm of the rig's roughness is `roughness`, whose
+    /// b of docs/model.md (36), the factor of `fixel_position`, `pusher_lag` and, while the camera is
+    /// off, `force_std`. The logarithm of the rig's roughness is `roughness`, whose
     /// own factor is not included. b is `well_measured` on the smoother half of rigs, 1 on the
     /// others.
     #[inline(always)]

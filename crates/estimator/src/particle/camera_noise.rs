@@ -120,7 +120,9 @@ impl CameraNoise {
         let one = Lanes::splat(1.0);
         let freedom = Lanes::splat(prior.freedom);
         let (of_position, of_angle) = (freedom + self.poses * 2.0, freedom + self.poses);
-        let (spread, turn) = (freedom + self.position, freedom + self.angle);
+        let most = Lanes::splat(prior.most);
+        let spread = (freedom + self.position).min(of_position * most);
+        let turn = (freedom + self.angle).min(of_angle * most);
         // Γ((ν + 1)/2) / Γ(ν/2) by Stirling's series, within 2e-4 from ν = 1 on
         let inverse = one / of_angle;
         let gamma = one - inverse * 0.25 + inverse * inverse * (1.0 / 32.0);

@@ -20,6 +20,7 @@ use crate::particle::model::ContactModel;
 use crate::particle::noise_clock::NoiseClock;
 use crate::particle::observation::{Observation, PoseAt};
 use crate::particle::pose_clock::PoseClock;
+use crate::particle::pusher_likelihood::Push;
 use crate::particle::replay::Replay;
 use crate::particle::step_plan::{ParameterNoise, StepPlan};
 use crate::particle::summary::summarise;
@@ -86,6 +87,7 @@ pub(crate) struct ContactFilter<'o> {
     trust: CameraTrust,
     replay: Replay,
     pusher: HiddenPusher,
+    push: Push,
     /// The latest camera pose.
     shown: Pose,
     /// Ways to move particles to where weighing would leave few.
@@ -129,6 +131,7 @@ impl<'o> ContactFilter<'o> {
             trust: CameraTrust::default(),
             replay: Replay::default(),
             pusher: HiddenPusher::default(),
+            push: Push::default(),
             shown: pose,
             moves: options.moves,
         };
@@ -282,6 +285,8 @@ impl<'o> ContactFilter<'o> {
                 self.pusher.unseen(scene, plan.duration(), hidden_object)
             }
         };
+        let least = self.filter.model().setup().uncertainty.pusher_lag;
+        plan.stopped = self.push.stops(&drive, plan.duration(), least);
         plan.slot = self.history.push(measured.time);
         let slots = self.history.slots();
         if slots > self.filter.model().columns().history() {

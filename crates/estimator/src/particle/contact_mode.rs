@@ -9,6 +9,7 @@ use crate::particle::chunk::{Column, FlagsMut, LANES, flag, load_chunk, store_ch
 use crate::particle::columns::Columns;
 use crate::particle::noise_clock::NOISE_STEP;
 use crate::particle::propagation::{Propagation, Transition, load_columns, store_columns};
+use crate::particle::pusher_likelihood::squared;
 use crate::particle::step_plan::StepPlan;
 use crate::particle::touch_channel::{TouchChannel, felt_or_idle};
 use crate::setup::Limits;
@@ -19,7 +20,8 @@ const OFFSET_PAIR: u32 = 1 << 20;
 pub(super) const UNSEEN_PAIR: u32 = OFFSET_PAIR + 2;
 const TURN_PAIR: u32 = UNSEEN_PAIR + 2;
 const SUPPORT_PAIR: u32 = TURN_PAIR + 2;
-const FIXEL_PAIR: u32 = SUPPORT_PAIR + 2;
+const REST_PAIR: u32 = SUPPORT_PAIR + 2;
+const FIXEL_PAIR: u32 = REST_PAIR + 2;
 
 /// Gap up to which bodies count as touching in the estimate (m).
 const TOUCHING: f64 = 1e-4;
@@ -42,6 +44,14 @@ impl Propagation {
         if let Some(pusher) = plan.unseen_pusher {
             self.normals_of(draw, UNSEEN_PAIR, block);
             self.carry(transition, plan, (pusher, draw), block);
+        }
+        if !plan.is_dark() && self.untouched.iter().any(|lanes| lanes.any()) {
+            self.normals_of(draw, REST_PAIR, block);
+            on_widest(
+                self.level,
+                #[inline(always)]
+                || self.nudge(transition, plan, block),
+            );
         }
         self.normals_of(draw, 0, block);
         on_widest(
@@ -134,6 +144,29 @@ impl Propagation {
         }
     }
 
+    /// Moves objects that nothing has come near yet by a random step, a share of the camera's noise
+    /// as that of the other unknowns: who last moved them may do so again.
+    #[inline(always)]
+    fn nudge(&mut self, transition: &Transition<'_>, plan: &StepPlan, block: &BlockMut<'_>) {
+        let share = JITTER * (plan.duration() / NOISE_STEP).sqrt();
+        let Some(camera) = transition.setup.camera else {
+            return;
+        };
+        let steps = [
+            camera.position_std,
+            camera.position_std,
+            camera.orientation_std,
+        ];
+        for chunk in 0..block.len().div_ceil(LANES) {
+            let untouched = self.untouched[chunk];
+            let pose = self.particles[chunk].pose.fields_mut();
+            for (k, (number, step)) in pose.into_iter().zip(steps).enumerate() {
+                let normal = load_chunk(&self.normals[k], chunk, 0.0);
+                *number += untouched.zero_unless(normal * (share * step));
+            }
+        }
+    }
+
     /// Draws the object's friction. A parameter that never took part is resampled from its prior.
     /// One that took part takes a random step that keeps the prior.
     #[inline(always)]
@@ -211,43 +244,23 @@ impl Propagation {
         self.work.gaps(chunk, body).lt(far)
     }
 
-    /// Weighs what is known without the camera at the end of the step: the pusher's place and the
-    /// readings of the sensors.
+    /// Weighs what is known without the camera at the end of the step: the readings of the sensors
+    /// and the pusher's place.
     pub(super) fn feel(
         &mut self,
         transition: &Transition<'_>,
         plan: &StepPlan,
         block: &mut BlockMut<'_>,
     ) {
-        self.read_pusher(transition, plan, block);
+        block
+            .column_mut(transition.columns.felt_log_likelihood())
+            .fill(0.0);
         on_widest(
             self.level,
             #[inline(always)]
             || self.read_touch(transition, plan, block),
         );
-    }
-
-    /// Weighs how far the pusher yielded behind its logged pose in this step. A particle that jams
-    /// a pusher which goes on contradicts the log. A pusher that has just come back into view does
-    /// not count: where the object went meanwhile is unknown.
-    fn read_pusher(
-        &self,
-        Transition { setup, columns, .. }: &Transition<'_>,
-        plan: &StepPlan,
-        block: &mut BlockMut<'_>,
-    ) {
-        let std = setup.uncertainty.pusher_lag;
-        let counts = if plan.pusher_is_back { 0.0 } else { 1.0 };
-        let scale = Lanes::splat(-0.5 * counts / (std * std));
-        for chunk in 0..block.len().div_ceil(LANES) {
-            let after = squared(self.particles[chunk].pusher_lag);
-            let log_likelihood = (after - self.lag_before[chunk]) * scale;
-            store_chunk(
-                block.column_mut(columns.felt_log_likelihood()),
-                chunk,
-                &log_likelihood,
-            );
-        }
+        self.read_pusher(transition, plan, block);
     }
 
     /// Weighs the tactile readings.
@@ -295,10 +308,6 @@ fn within(value: Column, limits: &Limits) -> Column {
     value
         .max(Lanes::splat(limits.min))
         .min(Lanes::splat(limits.max))
-}
-
-fn squared([x, y]: [Column; 2]) -> Column {
-    x * x + y * y
 }
 
 /// Notes in a chunk's flags which parameters took part. Adds to `phi` those that never did: they

@@ -21,6 +21,7 @@ pub(crate) mod observation;
 pub(crate) mod observer;
 pub(crate) mod pose_clock;
 pub(crate) mod propagation;
+mod pusher_likelihood;
 mod replay;
 mod rig;
 mod step_plan;

@@ -17,7 +17,7 @@ use crate::particle::step_plan::{ParameterNoise, StepPlan};
 use crate::setup::{Limits, Setup};
 
 /// Chunks of particles in a block.
-const CHUNKS: usize = BLOCK / LANES;
+pub(super) const CHUNKS: usize = BLOCK / LANES;
 
 /// Speed above which an object counts as moving, mass-normalised (m/s) (Φ, docs/method.md (21);
 /// paper Table I).

@@ -40,6 +40,9 @@ pub struct StepPlan {
     pub unseen_pusher: Option<UnseenPusher>,
     /// True if the pusher has just come back into view (robust model).
     pub pusher_is_back: bool,
+    /// Twist with which the pusher would have gone on, if it stops at the end of the step (robust
+    /// model).
+    pub stopped: Option<Twist>,
     /// History slot for the pose at the end of the step, where past poses are kept.
     pub slot: usize,
     /// Observation that weighed the particles at the row before, from which they learn the camera's
@@ -61,6 +64,7 @@ impl StepPlan {
             noise_age,
             unseen_pusher,
             pusher_is_back,
+            stopped,
             slot,
             seen,
             tactile,
@@ -72,7 +76,7 @@ impl StepPlan {
         (self.driven, self.parameter_noise) = (*driven, *parameter_noise);
         self.noise_age = *noise_age;
         (self.unseen_pusher, self.slot) = (*unseen_pusher, *slot);
-        self.pusher_is_back = *pusher_is_back;
+        (self.pusher_is_back, self.stopped) = (*pusher_is_back, *stopped);
         self.reference = *reference;
     }
 
@@ -108,6 +112,7 @@ impl StepPlan {
             noise_age: 0,
             unseen_pusher: None,
             pusher_is_back: false,
+            stopped: None,
             slot: 0,
             seen: Observation::default(),
             tactile: Vec::new(),

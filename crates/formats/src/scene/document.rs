@@ -11,7 +11,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::error::{SceneError, SceneProblem};
-use super::keys::{Key, key, names_of, nearest_key};
+use super::keys::{Key, instead_of, key, names_of, nearest_key};
 
 type Result<T> = std::result::Result<T, SceneError>;
 
@@ -144,10 +144,13 @@ impl<'a> Table<'a> {
         let Some((key, _)) = unknown.min_by_key(|(key, _)| key.span().start) else {
             return Ok(());
         };
-        let nearest = nearest_key(key.get_ref(), self.name);
-        let problem = SceneProblem::UnknownKey {
-            key: self.path_to(key.get_ref()),
-            nearest,
+        let path = self.path_to(key.get_ref());
+        let problem = match instead_of(&path) {
+            Some(instead) => SceneProblem::RemovedKey { key: path, instead },
+            None => SceneProblem::UnknownKey {
+                nearest: nearest_key(key.get_ref(), self.name),
+                key: path,
+            },
         };
         Err(self.source.error(key.span().start, problem))
     }

@@ -48,6 +48,14 @@ pub enum SceneProblem {
         /// belongs, as `object.mass`.
         nearest: String,
     },
+    /// A key that the format no longer has.
+    #[error("`{key}` is no longer a key: {instead}. Remove it")]
+    RemovedKey {
+        /// The key.
+        key: String,
+        /// Replacement of what it stood for.
+        instead: &'static str,
+    },
     /// A key that must be there.
     #[error("`{key}` is missing. Give {what}")]
     Missing {

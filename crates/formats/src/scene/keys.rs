@@ -191,14 +191,15 @@ const TABLES: [(&str, &[Key]); 14] = [
             FORCE),
         number("pusher_offset", Metre, NotNegative, Or("3.0e-4"),
             "the standard deviation of the pusher frame's offset from the camera's, per axis"),
-        number("pusher_lag", Metre, Positive, Or("3.0e-4"),
-            "the standard deviation of the distance by which a jammed pusher lags its logged pose"),
+        number("pusher_lag", Metre, Positive, Or("3.0e-3"),
+            "the distance by which a soft drive lags its logged pose in a jam before it stops")
+            .note("Times well_measured on the smoother half of rigs."),
         number("fixel_position", Metre, NotNegative, Or("3.0e-4"),
             "the standard deviation of a fixel's position, per axis"),
         number("roughness", PLAIN, NotNegative, Or("0.5"),
             "the standard deviation of ln of a common factor on these offsets"),
         number("well_measured", PLAIN, Share, Or("0.1"),
-            "the factor on fixel_position on the smoother half of rigs")
+            "the factor on fixel_position and pusher_lag on the smoother half of rigs")
             .note("Also on force_std with the camera off. 1 if fixel_position exceeds its default."),
         number("camera_noise", PLAIN, NotNegative, Or("0.3"),
             "the standard deviation of ln of the camera's noise over that of [camera]"),
@@ -316,6 +317,37 @@ pub(super) fn key(table: &str, name: &str) -> &'static Key {
         .find(|key| key.name == name)
         .unwrap_or_else(|| panic!("the format has no key {table}.{name}"))
 }
+
+/// What there is in place of a key that the format no longer has.
+pub(super) fn instead_of(path: &str) -> Option<&'static str> {
+    let (_, instead) = REMOVED.iter().find(|(removed, _)| *removed == path)?;
+    Some(instead)
+}
+
+/// Keys of earlier versions, and what there is in their place.
+const REMOVED: [(&str, &str); 6] = [
+    (
+        "uncertainty.drift",
+        "all unknowns take random steps of the same share of their priors",
+    ),
+    (
+        "uncertainty.variation",
+        "the random steps of friction also follow its variation from place to place",
+    ),
+    (
+        "uncertainty.variation_length",
+        "the random steps of friction also follow its variation from place to place",
+    ),
+    (
+        "uncertainty.outline",
+        "uncertainty.pusher_offset and uncertainty.fixel_position also cover a wrong outline",
+    ),
+    (
+        "uncertainty.force_spread",
+        "uncertainty.force_std is the same for all particles",
+    ),
+    ("uncertainty.creep", "contacts follow Coulomb's law"),
+];
 
 /// The known key that was probably meant: a near miss in `table`, else the same key in the table
 /// that has it.

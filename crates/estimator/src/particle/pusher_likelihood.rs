@@ -1,0 +1,110 @@
+//! The pusher as a sensor (docs/model.md (40)): where it goes on, the object did not jam it; where
+//! it stops, the object probably did.
+
+use stickslip_dynamics::{Lanes, PusherMotion, StepInput, Twist};
+use stickslip_filter::BlockMut;
+
+use crate::particle::chunk::{Column, LANES, load_chunk, store_chunk};
+use crate::particle::contact_filter::Drive;
+use crate::particle::propagation::{CHUNKS, Propagation, Transition};
+use crate::particle::step_plan::StepPlan;
+
+/// Probability that a pusher which stops was commanded to stop just there, over that of a stop by a
+/// jam.
+const COMMANDED: f64 = 0.03;
+
+/// Motion of the pusher since it stood last.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Push {
+    /// Latest twist in which it was about as fast as ever in this push.
+    twist: Twist,
+    /// Way that it has gone (m).
+    way: f64,
+}
+
+impl Push {
+    /// Takes a step of `h` seconds. If the pusher stops after a way of `least` (m) or more, it
+    /// returns the twist with which it would have gone on. A shorter way may be noise of its poses.
+    pub fn stops(&mut self, drive: &Drive<'_>, h: f64, least: f64) -> Option<Twist> {
+        let twist = drive.substeps.last()?.pusher?.twist;
+        if drive.moves {
+            if speed(&twist) > 0.5 * speed(&self.twist) {
+                self.twist = twist;
+            }
+            self.way += speed(&twist) * h;
+            return None;
+        }
+        let Self { twist, way } = std::mem::take(self);
+        (way >= least).then_some(twist)
+    }
+}
+
+impl Propagation {
+    /// Weighs how far the pusher yielded behind its logged pose in this step, and whether it would
+    /// yield if it went on where it stops. A pusher that has just come back into view does not
+    /// count: where the object went meanwhile is unknown.
+    pub(super) fn read_pusher(
+        &mut self,
+        transition: &Transition<'_>,
+        plan: &StepPlan,
+        block: &mut BlockMut<'_>,
+    ) {
+        let Transition { setup, columns, .. } = transition;
+        let chunks = block.len().div_ceil(LANES);
+        let lag = setup.uncertainty.pusher_lag;
+        let counts = if plan.pusher_is_back { 0.0 } else { 1.0 };
+        let further = self.lags_if_it_went_on(transition, plan, chunks);
+        for chunk in 0..chunks {
+            let roughness = load_chunk(block.column(columns.roughness()), chunk, 0.0);
+            let std = setup.uncertainty.well_measured_at(roughness) * lag;
+            let scale = Lanes::splat(-0.5 * counts) / (std * std);
+            let after = squared(self.particles[chunk].pusher_lag);
+            let mut log_likelihood = (after - self.lag_before[chunk]) * scale;
+            if let Some(further) = &further {
+                let goes_on = ((further[chunk] - after).max(Lanes::ZERO) * scale).exp();
+                let stops = Lanes::splat(1.0) - goes_on * (1.0 - COMMANDED);
+                log_likelihood = log_likelihood + (stops * (1.0 / COMMANDED)).ln();
+            }
+            let column = columns.felt_log_likelihood();
+            let so_far = load_chunk(block.column(column), chunk, 0.0);
+            store_chunk(block.column_mut(column), chunk, &(so_far + log_likelihood));
+        }
+    }
+
+    /// Returns, where the pusher stops, the squares of its lags if it went on by `pusher_lag`, chunk
+    /// by chunk. The particles stay as they are.
+    fn lags_if_it_went_on(
+        &mut self,
+        transition: &Transition<'_>,
+        plan: &StepPlan,
+        chunks: usize,
+    ) -> Option<[Column; CHUNKS]> {
+        let twist = plan.stopped?;
+        let last = plan.substeps.last()?;
+        let stands = last.pusher?;
+        let speed = speed(&twist);
+        let on = PusherMotion {
+            pose: stands.pose.advance(stands.twist, last.h),
+            twist,
+            direction: [twist.vx / speed, twist.vy / speed],
+        };
+        let input = StepInput {
+            h: transition.setup.uncertainty.pusher_lag / speed,
+            pusher: Some(on),
+        };
+        let kept = self.particles;
+        self.step_with_offsets(transition, &input, chunks);
+        let lags = self.particles.each_ref().map(|p| squared(p.pusher_lag));
+        self.particles = kept;
+        Some(lags)
+    }
+}
+
+fn speed(twist: &Twist) -> f64 {
+    libm::hypot(twist.vx, twist.vy)
+}
+
+/// Square of a lag (m²).
+pub(super) fn squared([x, y]: [Column; 2]) -> Column {
+    x * x + y * y
+}
