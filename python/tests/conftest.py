@@ -2,6 +2,7 @@
 
 import os
 import shutil
+import subprocess
 from pathlib import Path
 
 import pytest
@@ -41,4 +42,6 @@ def program() -> str:
     found = next((path for path in named if path), None) or shutil.which("stickslip")
     if found is None:
         pytest.skip("no program stickslip: cargo build, or set STICKSLIP_PROGRAM")
+    if b"--features camera" in subprocess.run([found, "track"], capture_output=True).stderr:
+        pytest.skip("the program lacks what the package has: cargo build --release --features camera,png")
     return found

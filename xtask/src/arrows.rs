@@ -12,7 +12,7 @@ use crate::finding::Finding;
 ///
 /// Arrows run one way: bytes, formats, estimator, then filter and dynamics, then lanes. Testbed,
 /// rendering and vision stand next to the estimator, and evaluation brings all together.
-const CRATES: [(&str, &str); 16] = [
+const CRATES: [(&str, &str); 17] = [
     ("lanes", ""),
     ("dynamics", "lanes"),
     ("filter", "lanes"),
@@ -21,10 +21,7 @@ const CRATES: [(&str, &str); 16] = [
     ("testbed", "dynamics filter"),
     ("rendering", "dynamics filter"),
     ("vision", "dynamics (rendering) (filter)"),
-    (
-        "evaluation",
-        "dynamics filter estimator formats testbed rendering vision",
-    ),
+    ("evaluation", "dynamics filter estimator formats testbed"),
     ("fit", "dynamics filter estimator formats evaluation"),
     ("report", "dynamics estimator formats evaluation"),
     (
@@ -32,8 +29,15 @@ const CRATES: [(&str, &str); 16] = [
         "dynamics filter estimator formats testbed rendering vision evaluation fit report",
     ),
     ("python", "dynamics estimator formats evaluation fit cli"),
-    ("testkit", "dynamics estimator formats"),
-    ("bench", "lanes dynamics filter estimator formats"),
+    ("testkit", "dynamics"),
+    (
+        "experiments",
+        "dynamics filter estimator formats evaluation testkit",
+    ),
+    (
+        "bench",
+        "lanes dynamics filter estimator formats (experiments)",
+    ),
     ("xtask", ""),
 ];
 
@@ -98,6 +102,7 @@ pub fn folders() -> impl Iterator<Item = String> {
 fn path(name: &str) -> String {
     match name {
         "xtask" => name.to_string(),
+        "rendering" | "vision" => format!("crates/camera/{name}"),
         _ => format!("crates/{name}"),
     }
 }

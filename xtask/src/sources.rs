@@ -24,8 +24,8 @@ const LIBRARIES: [&str; 10] = [
     "crates/formats/",
     "crates/report/",
     "crates/testbed/",
-    "crates/rendering/",
-    "crates/vision/",
+    "crates/camera/rendering/",
+    "crates/camera/vision/",
     "crates/evaluation/",
 ];
 

@@ -15,7 +15,7 @@ use std::time::{Duration, Instant};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use stickslip::{RunError, RunOptions, keep_threads_awake, quantile, run};
 use stickslip_bench::Results;
-use stickslip_testkit::RecordedCase;
+use stickslip_experiments::RecordedCase;
 
 use common::recorded_case;
 

@@ -9,7 +9,8 @@ use std::time::Instant;
 
 use stickslip::{FilterModel, Occlusion, RunOptions, keep_threads_awake, quantile, run};
 use stickslip_bench::Results;
-use stickslip_testkit::{RecordedCase, data_root, recorded_cases};
+use stickslip_experiments::{RecordedCase, recorded_cases};
+use stickslip_testkit::data_root;
 
 /// Rounds that are counted.
 const ROUNDS: usize = 21;

@@ -16,7 +16,8 @@ use std::time::Instant;
 use stickslip::{FilterModel, Observer, Occlusion, RunOptions, SolvedStep, quantile, run_observed};
 use stickslip_bench::{FilterBlock, LANES, Results, StepStatistics, instruction_sets};
 use stickslip_dynamics::{Dynamics, Particles, StepInput, StepWork};
-use stickslip_testkit::{RecordedCase, data_root, recorded_cases};
+use stickslip_experiments::{RecordedCase, recorded_cases};
+use stickslip_testkit::data_root;
 
 /// Rounds that are counted.
 const ROUNDS: usize = 3;

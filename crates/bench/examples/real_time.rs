@@ -17,7 +17,7 @@ use rayon::ThreadPoolBuilder;
 use stickslip::{
     FilterModel, Occlusion, RunOptions, keep_threads_awake, quantile, run, useful_threads,
 };
-use stickslip_testkit::{RecordedCase, recorded_cases};
+use stickslip_experiments::{RecordedCase, recorded_cases};
 
 /// Cost of a run of one experiment.
 struct Timed {

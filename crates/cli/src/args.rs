@@ -7,17 +7,16 @@ use stickslip::{FilterModel, Method, Occlusion, RunOptions, TactileUse, Tracking
 use stickslip_evaluation::Variant;
 
 use crate::arg_values::{ForceArgs, Rows, ThreadArgs, particles, positive};
-use crate::camera_args::{CalibrateArgs, RenderArgs, TrackArgs};
+use crate::camera::{self, CalibrateArgs, PrintArgs, RenderArgs, TrackArgs};
 use crate::fit_args::FitArgs;
 use crate::given::GivenArgs;
 use crate::live_args::LiveArgs;
-use crate::print_args::PrintArgs;
 use crate::simulation_args::{ReproduceArgs, SimulateArgs};
 use crate::topic_args::TopicArgs;
 
 /// Estimates pose and friction of a pushed object, through contact and with the camera off.
 #[derive(Debug, Parser)]
-#[command(name = "stickslip", version, max_term_width = 120)]
+#[command(name = "stickslip", version, max_term_width = 120, after_help = camera::NOTE)]
 pub struct Program {
     /// The command.
     #[command(subcommand)]

@@ -9,7 +9,7 @@ use stickslip_report::{Block, Report, ReportedExperiment, ReportedRun, Section};
 
 use crate::args::DemoArgs;
 use crate::experiment::Texts;
-use crate::files::{ready_folder, write_figures, write_file, write_report};
+use crate::files::{FIGURE_FORMATS, ready_folder, write_figures, write_file, write_report};
 use crate::origin::origin;
 use crate::output::show;
 use crate::reported_run::reported_run;
@@ -88,7 +88,7 @@ pub fn demo(args: &DemoArgs) -> Result<Verdict> {
     };
     let path = write_report(args.out.join("report.html"), &report)?;
     show(format_args!(
-        "page: {} (open it in a browser)\nnext to it: {figures} figures as SVG and PNG, and two animations as SVG",
+        "page: {} (open it in a browser)\nnext to it: {figures} figures as {FIGURE_FORMATS}, and two animations as SVG",
         path.display()
     ))?;
     Ok(Verdict::Done)

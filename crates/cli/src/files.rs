@@ -7,7 +7,7 @@ use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use anyhow::Result;
-use stickslip_report::{Drawing, Report, ReportedExperiment, png_of};
+use stickslip_report::{Drawing, Report, ReportedExperiment};
 
 use crate::failure::hinted;
 
@@ -214,8 +214,15 @@ impl Drop for Part {
     }
 }
 
-/// Writes the figures of an experiment into a folder as SVG and PNG, their names after the
-/// experiment's; returns how many.
+/// Formats of figures.
+pub const FIGURE_FORMATS: &str = if cfg!(feature = "png") {
+    "SVG and PNG"
+} else {
+    "SVG"
+};
+
+/// Writes the figures of an experiment into a folder, their names after the experiment's; returns
+/// how many.
 pub fn write_figures(folder: &Path, experiment: &ReportedExperiment<'_>) -> Result<usize> {
     let figures = experiment.figures();
     for figure in &figures {
@@ -225,10 +232,14 @@ pub fn write_figures(folder: &Path, experiment: &ReportedExperiment<'_>) -> Resu
     Ok(figures.len())
 }
 
-/// Writes a figure into a folder as SVG and PNG, for print.
+/// Writes a figure into a folder, for print.
 pub fn write_figure(folder: &Path, name: &str, drawing: &Drawing) -> Result<()> {
     let svg = drawing.to_print_svg();
-    write_file(&folder.join(format!("{name}.png")), &png_of(&svg)?)?;
+    #[cfg(feature = "png")]
+    write_file(
+        &folder.join(format!("{name}.png")),
+        &stickslip_report::png_of(&svg)?,
+    )?;
     write_file(&folder.join(format!("{name}.svg")), svg.as_bytes())
 }
 

@@ -10,10 +10,8 @@
 
 mod arg_values;
 mod args;
-mod bag_images;
-mod calibrate;
-mod camera_args;
-mod camera_setup;
+#[cfg_attr(not(feature = "camera"), path = "no_camera.rs")]
+mod camera;
 mod check;
 mod compare;
 mod demo;
@@ -23,8 +21,6 @@ mod files;
 mod filter;
 mod fit;
 mod fit_args;
-mod frame_names;
-mod frames;
 mod given;
 mod in_process;
 mod info;
@@ -34,17 +30,13 @@ mod log_files;
 mod new;
 mod origin;
 mod output;
-mod print;
-mod print_args;
 mod progress;
-mod render;
 mod reported_run;
 mod reproduce;
 mod simulate;
 mod simulation_args;
 mod since_start;
 mod topic_args;
-mod track;
 mod verdict;
 
 use std::ffi::OsString;
@@ -84,13 +76,13 @@ fn command(command: Command) -> u8 {
         Command::Simulate(args) => simulate::simulate(&args),
         Command::Reproduce(args) => reproduce::reproduce(&args),
         Command::New(args) => new::new(&args),
-        Command::Print(args) => print::print(&args),
+        Command::Print(args) => camera::print(&args),
         Command::Check(args) => check::check(&args),
         Command::Info(args) => info::info(&args),
         Command::Live(args) => live::live(&args),
-        Command::Calibrate(args) => calibrate::calibrate(&args),
-        Command::Track(args) => track::track(&args),
-        Command::Render(args) => render::render(&args),
+        Command::Calibrate(args) => camera::calibrate(&args),
+        Command::Track(args) => camera::track(&args),
+        Command::Render(args) => camera::render(&args),
     };
     result.unwrap_or_else(|error| output::tell(&error)).code()
 }

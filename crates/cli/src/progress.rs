@@ -20,6 +20,7 @@ pub fn bar(length: usize, unit: &str, work: Work) -> ProgressBar {
 }
 
 /// A count of `unit` whose total is not known.
+#[cfg(feature = "camera")]
 pub fn spinner(unit: &str) -> ProgressBar {
     let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
     match ProgressStyle::with_template(&format!("{{spinner}} {{pos}} {unit}, {{elapsed}}")) {

@@ -1,8 +1,6 @@
 //! `stickslip reproduce`: the paper's tables and figures, ours next to the paper's numbers.
 
-mod camera_view;
 mod figures;
-mod filmed;
 mod page;
 mod text;
 
@@ -12,18 +10,17 @@ use anyhow::Result;
 use rayon::prelude::*;
 use serde::Serialize;
 use stickslip_evaluation::paper::{
-    Noise, NoiseLevel, PaperExperiment, Ratio, Replicate, Results, RunSet, RunSettings,
+    NoiseLevel, PaperExperiment, Ratio, Replicate, Results, RunSet, RunSettings,
 };
 use stickslip_evaluation::{ScoredRun, Variant};
-use stickslip_rendering::Optics;
 
-use crate::files::{ready_folder, write_figure, write_file, write_report};
+use crate::camera::filmed;
+use crate::files::{FIGURE_FORMATS, ready_folder, write_figure, write_file, write_report};
 use crate::output::{show_result, talk};
 use crate::progress::{Work, bar};
 use crate::simulation_args::ReproduceArgs;
 use crate::verdict::Verdict;
 use figures::figures;
-use filmed::{CalibratedCamera, Tracked};
 use page::page;
 
 /// Seeds where the command line does not say.
@@ -125,7 +122,7 @@ impl Report {
 
 /// Writes reproduce.json, the figures and report.html.
 fn write(folder: &Path, report: &Report, run_sets: &[RunSet]) -> Result<()> {
-    let figures = figures(run_sets)?;
+    let figures = figures(run_sets);
     figures
         .par_iter()
         .try_for_each(|figure| write_figure(folder, figure.name, &figure.drawing))?;
@@ -138,7 +135,7 @@ fn write(folder: &Path, report: &Report, run_sets: &[RunSet]) -> Result<()> {
         &page(report, run_sets, &figures)?,
     )?;
     talk(format_args!(
-        "wrote {} figures as SVG and PNG, reproduce.json and {}",
+        "wrote {} figures as {FIGURE_FORMATS}, reproduce.json and {}",
         figures.len(),
         page.display()
     ));
@@ -160,39 +157,6 @@ fn simulated(seeds: u64) -> Result<Vec<Replicate>> {
     let replicates = all.into_par_iter().map(simulate).collect::<Result<_, _>>();
     progress.finish_and_clear();
     Ok(replicates?)
-}
-
-/// The replicates from frames, the same from simulated poses of equal noise, and that noise by
-/// experiment.
-fn filmed(replicates: &[Replicate]) -> Result<(Vec<Replicate>, Vec<Replicate>, Vec<NoiseLevel>)> {
-    let frames = replicates.iter().map(|own| own.experiment.log.len()).sum();
-    let progress = bar(frames, "frames", Work::Long);
-    let (mut tracked, mut simulated, mut levels) = (Vec::new(), Vec::new(), Vec::new());
-    for paper in PaperExperiment::ALL {
-        // film and track all seeds before one calibrated camera
-        let own = replicates.iter().filter(|own| own.paper == paper);
-        let own: Vec<&Replicate> = own.collect();
-        let camera = CalibratedCamera::new(&own, Optics::default())?;
-        let seen: Vec<Tracked> = own
-            .par_iter()
-            .map(|replicate| camera.track(replicate, &progress))
-            .collect::<Result<_>>()?;
-
-        // simulate poses with the noise of all of them
-        let noise = seen
-            .iter()
-            .fold(Noise::default(), |sum, tracked| sum.with(tracked.noise));
-        levels.push(noise.level());
-        simulated.extend(
-            seen.par_iter()
-                .map(|tracked| tracked.replicate.with_noise(&noise))
-                .collect::<Result<Vec<_>, _>>()?,
-        );
-        let given = noise.given_camera();
-        tracked.extend(seen.into_iter().map(|seen| seen.replicate.given(given)));
-    }
-    progress.finish_and_clear();
-    Ok((tracked, simulated, levels))
 }
 
 /// Every variant of an experiment on every replicate of it.

@@ -42,7 +42,7 @@ pub struct SimulateArgs {
 /// Arguments of `stickslip reproduce`.
 #[derive(Debug, Args)]
 pub struct ReproduceArgs {
-    /// Folder for reproduce.json, Figures 2 to 7 as SVG and PNG, and report.html
+    /// Folder for reproduce.json, Figures 2 to 7 and report.html
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Number of seeds of rig, sensors and filter, 1 to 1000 [default: 20]

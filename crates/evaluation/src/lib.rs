@@ -4,11 +4,8 @@
 //! Nothing here opens a file or reads a clock. The same arguments give the same bits.
 
 mod belief;
-mod calibration;
-mod ingredient;
 mod learned_friction;
 pub mod paper;
-mod reference;
 mod run;
 mod score;
 mod simulation;
@@ -16,12 +13,7 @@ mod statistics;
 mod variant;
 
 pub use belief::Belief;
-pub use calibration::{
-    CalibrationOptions, CalibrationRun, Observed, Placed, QUANTITIES, RankTally, Tally, TruthSource,
-};
-pub use ingredient::Ingredient;
 pub use learned_friction::{LearnedParameter, LearningFriction};
-pub use reference::Agreement;
 pub use run::{RunConditions, ScoredRun};
 pub use score::{Reference, Scores, score};
 pub use simulation::{

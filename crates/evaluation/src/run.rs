@@ -113,7 +113,7 @@ impl ScoredRun {
 
 impl RunConditions {
     /// Options of a run of `variant`.
-    pub(crate) fn options(&self, variant: Variant) -> RunOptions {
+    pub fn options(&self, variant: Variant) -> RunOptions {
         RunOptions {
             method: variant.method(),
             model: self.model,

@@ -1,5 +1,5 @@
-//! Writes one figure of every kind into a folder: `cargo run -p stickslip-report --example gallery
-//! -- FOLDER`.
+//! Writes one figure of every kind into a folder: `cargo run -p stickslip-report --features
+//! png --example gallery -- FOLDER`.
 
 use std::f64::consts::TAU;
 use std::path::Path;

@@ -126,7 +126,7 @@ impl Animation {
 
         // the fixels and the whole way of pusher and object are in the picture
         let shape = &experiment.setup.scene.object.shape;
-        let outline = Outline::new(shape, f64::INFINITY);
+        let outline = Outline::new(shape);
         let poses = rows
             .iter()
             .filter_map(|row| experiment.reference.pose_at(experiment.time_of(*row)));
@@ -192,7 +192,7 @@ impl Animation {
     /// Outline of a shape about its origin (px, downwards).
     fn local(&self, shape: &Shape) -> Outline {
         let scale = self.scale;
-        Outline::new(shape, f64::INFINITY).mapped(&|[x, y]| Some([scale * x, -scale * y]))
+        Outline::new(shape).mapped(&|[x, y]| [scale * x, -scale * y])
     }
 
     /// Something at the last pose, or moving through all of them.

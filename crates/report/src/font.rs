@@ -27,10 +27,9 @@ static FACES: LazyLock<[Option<Face<'static>>; 2]> =
 /// Width of a line of text (px) at a font size (px); letters that the font lacks count as half the
 /// size.
 pub(crate) fn width(text: &str, size: f64, weight: Weight) -> f64 {
-    let face = FACES[weight as usize].as_ref();
     let advance = |letter: char| {
-        let face = face?;
-        let units = face.glyph_hor_advance(face.glyph_index(letter)?)?;
+        let (face, glyph) = glyph(letter, weight)?;
+        let units = face.glyph_hor_advance(glyph)?;
         Some(f64::from(units) / f64::from(face.units_per_em()))
     };
     size * text

@@ -1,9 +1,8 @@
 //! Figures, tables and the self-contained HTML report of pushing experiments. Nothing here computes
 //! an estimate or opens a file.
 //!
-//! Figures are drawn as SVG straight from the numbers: they are small, keep their text, take on the
-//! colours of the page that holds them, and the same code draws bodies on camera images. [`png_of`]
-//! turns them into pixels.
+//! Figures are drawn as SVG straight from the numbers: they are small, keep their text, and take on
+//! the colours of their page. With the feature `png`, `png_of` turns them into pixels.
 
 mod animation;
 mod axis;
@@ -17,6 +16,7 @@ mod experiment_figures;
 mod font;
 mod intervals;
 mod legend;
+#[cfg(feature = "png")]
 mod lettering;
 mod live_page;
 mod marks;
@@ -27,6 +27,7 @@ mod particle_cloud;
 mod playback;
 mod playback_data;
 mod plot;
+#[cfg(feature = "png")]
 mod png;
 mod reported_experiment;
 mod reported_run;
@@ -46,10 +47,11 @@ pub use experiment_figures::Figure;
 pub use live_page::live_page;
 pub use marks::Mark;
 pub use outline::Outline;
-pub use overlay::{Body, CameraImage, ImageError, Overlay};
+pub use overlay::{Body, Overlay};
 pub use page::{Block, Report, Section};
 pub use particle_cloud::ParticleCloud;
 pub use playback::{Playback, PlaybackRun, Touch};
+#[cfg(feature = "png")]
 pub use png::{PngError, png_of};
 pub use reported_experiment::ReportedExperiment;
 pub use reported_run::ReportedRun;

@@ -16,7 +16,7 @@ const LIVE: &str = include_str!("../page/live.js");
 /// the page's own query, and draws the newest message.
 #[must_use]
 pub fn live_page(scene: &Scene, title: &str) -> String {
-    let outline = |shape| Outline::new(shape, f64::INFINITY);
+    let outline = |shape| Outline::new(shape);
     let fixels = scene.fixels.iter();
     let fixels: Vec<Outline> = fixels
         .map(|fixel| outline(&fixel.shape).at(&fixel.pose))

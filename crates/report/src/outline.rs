@@ -19,15 +19,14 @@ pub struct Outline {
 }
 
 impl Outline {
-    /// The outline of a shape in its own frame; no piece of a line is longer than `piece` (m),
-    /// which may be infinite.
+    /// The outline of a shape in its own frame.
     #[must_use]
-    pub fn new(shape: &Shape, piece: f64) -> Self {
+    pub fn new(shape: &Shape) -> Self {
         let seamless = shape.parts().len() == 1;
         let longest = if seamless {
-            piece
+            f64::INFINITY
         } else {
-            piece.min(0.02 * shape.bounding_radius())
+            0.02 * shape.bounding_radius()
         };
         let areas: Vec<Vec<[f64; 2]>> = shape
             .parts()
@@ -50,16 +49,16 @@ impl Outline {
     /// The outline of a body at a pose.
     #[must_use]
     pub fn at(&self, pose: &Pose) -> Self {
-        self.mapped(&|point| Some(pose.transform(point)))
+        self.mapped(&|point| pose.transform(point))
     }
 
-    /// Every point mapped; those that have no image are left out.
+    /// Every point mapped.
     #[must_use]
-    pub fn mapped(&self, map: &dyn Fn([f64; 2]) -> Option<[f64; 2]>) -> Self {
+    pub fn mapped(&self, map: &dyn Fn([f64; 2]) -> [f64; 2]) -> Self {
         let each = |lines: &[Vec<[f64; 2]>]| {
             lines
                 .iter()
-                .map(|line| line.iter().filter_map(|point| map(*point)).collect())
+                .map(|line| line.iter().map(|point| map(*point)).collect())
                 .collect()
         };
         Self {
@@ -184,7 +183,7 @@ mod tests {
 
     #[test]
     fn outline_of_one_part_is_its_boundary() {
-        let square = Outline::new(&Shape::new(vec![box_at(0.0, 1.0)]).unwrap(), f64::INFINITY);
+        let square = Outline::new(&Shape::new(vec![box_at(0.0, 1.0)]).unwrap());
         assert_eq!(
             square.lines,
             [vec![
@@ -199,7 +198,7 @@ mod tests {
             radius: 2.0,
             centre: [1.0, 0.0],
         };
-        let disc = Outline::new(&Shape::new(vec![disc]).unwrap(), f64::INFINITY);
+        let disc = Outline::new(&Shape::new(vec![disc]).unwrap());
         assert_eq!(disc.bounds().unwrap()[1][0], 3.0);
         assert!((length(&disc.lines) / (4.0 * std::f64::consts::PI) - 1.0).abs() < 1e-3);
     }
@@ -209,7 +208,7 @@ mod tests {
         // two squares side by side: the circumference of a 2 x 1 box, without the edge that they
         // share
         let boxes = Shape::new(vec![box_at(0.0, 1.0), box_at(1.0, 1.0)]).unwrap();
-        assert!((length(&Outline::new(&boxes, f64::INFINITY).lines) - 6.0).abs() < 1e-9);
+        assert!((length(&Outline::new(&boxes).lines) - 6.0).abs() < 1e-9);
         // a disc half sunk into a square: the square less its diameter, and half of the disc
         let sunk = Shape::new(vec![
             box_at(0.0, 1.0),
@@ -220,13 +219,12 @@ mod tests {
         ])
         .unwrap();
         let expected = 4.0 - 0.5 + 0.25 * std::f64::consts::PI;
-        assert!((length(&Outline::new(&sunk, f64::INFINITY).lines) - expected).abs() < 0.03);
+        assert!((length(&Outline::new(&sunk).lines) - expected).abs() < 0.03);
     }
 
     #[test]
-    fn outline_is_moved_and_mapped_point_by_point() {
-        let square = Outline::new(&Shape::new(vec![box_at(0.0, 1.0)]).unwrap(), 0.5);
-        assert_eq!(square.areas[0].len(), 8);
+    fn outline_is_moved_point_by_point() {
+        let square = Outline::new(&Shape::new(vec![box_at(0.0, 1.0)]).unwrap());
         let turned = square.at(&Pose::new(10.0, 0.0, std::f64::consts::FRAC_PI_2));
         let [[left, low], [right, high]] = turned.bounds().unwrap();
         assert!(
@@ -235,6 +233,5 @@ mod tests {
                 && (right - 10.0).abs() < 1e-12
                 && (high - 1.0).abs() < 1e-12
         );
-        assert!(square.mapped(&|_| None).bounds().is_none());
     }
 }

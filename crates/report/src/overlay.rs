@@ -1,8 +1,5 @@
-//! Poses over each other: [`Overlay`], bodies of one or several estimates in the plane or on a
-//! camera image.
+//! Poses over each other: [`Overlay`], bodies of one or several estimates in the plane.
 
-use base64::Engine;
-use base64::prelude::BASE64_STANDARD;
 use maud::{Markup, html};
 use stickslip_dynamics::{Pose, Scene, Shape};
 
@@ -11,9 +8,6 @@ use crate::drawing::{Anchor, Drawing, GRID, LABEL, TITLE, Text, path, px};
 use crate::font::Weight;
 use crate::legend::{Legend, Swatch};
 use crate::outline::{Outline, bounds};
-
-/// Pieces of an outline on an image, where straight lines become bent ones (m).
-const PIECE: f64 = 2e-3;
 
 /// Margins about the picture (px).
 const MARGIN: f64 = 12.0;
@@ -25,8 +19,7 @@ pub struct Overlay {
     pub title: String,
     /// Bodies, the lowest one first.
     pub bodies: Vec<Body>,
-    /// Section of the plane that is shown: two corners (m); `None`: all bodies. On an image:
-    /// section of the image, in its pixels.
+    /// Section of the plane that is shown: two corners (m); `None`: all bodies.
     pub view: Option<[[f64; 2]; 2]>,
     /// Width of the picture (px).
     pub width: f64,
@@ -51,28 +44,6 @@ pub struct Body {
     pub thin: bool,
 }
 
-/// A camera image, and the map from the plane to its pixels.
-pub struct CameraImage<'a> {
-    /// The image as PNG.
-    pub png: &'a [u8],
-    /// The pixel at which a point of the plane (m) is seen: right of the left edge, down from the
-    /// top edge; `None` where it is not.
-    pub pixel: &'a dyn Fn([f64; 2]) -> Option<[f64; 2]>,
-}
-
-/// Reason why a camera image could not be drawn on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("the camera image is no PNG; give the bytes of a whole PNG file")]
-pub struct ImageError;
-
-impl std::fmt::Debug for CameraImage<'_> {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("CameraImage")
-            .field("png", &self.png.len())
-            .finish_non_exhaustive()
-    }
-}
-
 impl Default for Overlay {
     fn default() -> Self {
         Self {
@@ -88,7 +59,7 @@ impl Body {
     /// A shape at a pose, as an outline without inside.
     #[must_use]
     pub fn new(name: &str, shape: &Shape, pose: &Pose, colour: Colour) -> Self {
-        let outline = Outline::new(shape, PIECE).at(pose);
+        let outline = Outline::new(shape).at(pose);
         Self {
             name: name.to_owned(),
             tag: String::new(),
@@ -144,21 +115,13 @@ impl Overlay {
         self.drawing().to_svg()
     }
 
-    /// The bodies on a camera image, as SVG text.
-    ///
-    /// # Errors
-    /// The image is no PNG.
-    pub fn to_svg_on(&self, image: &CameraImage<'_>) -> Result<String, ImageError> {
-        Ok(self.drawing_on(image)?.to_svg())
-    }
-
     /// The bodies in the plane, to be put next to other drawings.
     #[must_use]
     pub fn drawing(&self) -> Drawing {
         let [[left, low], [right, high]] = self.view.unwrap_or_else(|| self.whole_view());
         let inner = self.width - 2.0 * MARGIN;
         let scale = inner / (right - left).max(1e-9);
-        let map = |[x, y]: [f64; 2]| Some([scale * (x - left), scale * (high - y)]);
+        let map = |[x, y]: [f64; 2]| [scale * (x - left), scale * (high - y)];
         let size = [inner, scale * (high - low)];
         self.framed(size, html! { path class="grid" d=(grid_lines([left, high], scale, size)) stroke=(GRID.hex()) fill="none" {} }, scale, &map)
     }
@@ -175,49 +138,23 @@ impl Overlay {
         with_room(all.unwrap_or([[-0.05, -0.05], [0.05, 0.05]]))
     }
 
-    /// The bodies on a camera image, to be put next to other drawings.
-    ///
-    /// # Errors
-    /// The image is no PNG.
-    pub fn drawing_on(&self, image: &CameraImage<'_>) -> Result<Drawing, ImageError> {
-        let [columns, rows] = png_size(image.png).ok_or(ImageError)?;
-        let [[left, top], [right, bottom]] = self.view.unwrap_or([[0.0, 0.0], [columns, rows]]);
-        let inner = self.width - 2.0 * MARGIN;
-        let scale = inner / (right - left).max(1e-9);
-        let map =
-            |point| (image.pixel)(point).map(|[x, y]| [scale * (x - left), scale * (y - top)]);
-        let href = format!(
-            "data:image/png;base64,{}",
-            BASE64_STANDARD.encode(image.png)
-        );
-        let background = html! {
-            image x=(px(-scale * left)) y=(px(-scale * top)) width=(px(scale * columns)) height=(px(scale * rows)) href=(href) {}
-        };
-        Ok(self.framed([inner, scale * (bottom - top)], background, 0.0, &map))
-    }
-
-    /// Title, the picture in its frame, legend. `scale` is that of the plane (px/m), 0 where there
-    /// is none.
+    /// Title, the picture in its frame, legend and scale, which is that of the plane (px/m).
     fn framed(
         &self,
         [width, height]: [f64; 2],
         background: Markup,
         scale: f64,
-        map: &dyn Fn([f64; 2]) -> Option<[f64; 2]>,
+        map: &dyn Fn([f64; 2]) -> [f64; 2],
     ) -> Drawing {
         let head = if self.title.is_empty() { MARGIN } else { 34.0 };
         let foot = head + height + 8.0;
-        let (bar, room) = if scale > 0.0 {
-            scale_bar(scale, [MARGIN + width, foot], width)
-        } else {
-            (html! {}, 0.0)
-        };
+        let (bar, room) = scale_bar(scale, [MARGIN + width, foot], width);
         let (legend, legend_height) = self.legend().draw([MARGIN, foot], width - room);
         let body = html! {
             (Text { weight: Weight::Bold, ..Text::at([MARGIN, 23.0], &self.title) }.sized(TITLE))
             svg x=(px(MARGIN)) y=(px(head)) width=(px(width)) height=(px(height)) viewBox={ "0 0 " (px(width)) " " (px(height)) } overflow="hidden" {
                 (background)
-                @for body in &self.bodies { (body.draw(&body.outline.mapped(map), scale <= 0.0)) }
+                @for body in &self.bodies { (body.draw(&body.outline.mapped(map))) }
             }
             rect class="axis" x=(px(MARGIN)) y=(px(head)) width=(px(width)) height=(px(height)) fill="none" stroke=(Colour::INK.hex()) {}
             (legend)
@@ -242,9 +179,8 @@ impl Overlay {
 }
 
 impl Body {
-    /// Draws the body with its outline in pixels; on an image with a light rim about its boundary,
-    /// which is seen whatever the image has there.
-    fn draw(&self, outline: &Outline, on_image: bool) -> Markup {
+    /// Draws the body with its outline in pixels.
+    fn draw(&self, outline: &Outline) -> Markup {
         let area: String = outline
             .areas
             .iter()
@@ -263,7 +199,6 @@ impl Body {
         });
         html! {
             path d=(area) fill=(self.colour.hex()) fill-opacity=(px(self.opacity)) {}
-            @if on_image { path d=(boundary) fill="none" stroke="#ffffff" stroke-width="4.5" stroke-opacity="0.75" stroke-linejoin="round" {} }
             path d=(boundary) fill="none" stroke=(self.colour.hex()) stroke-width=(if self.thin { "1" } else { "2" }) stroke-opacity=[self.thin.then_some("0.16")] stroke-linejoin="round" stroke-linecap="round"
                 stroke-dasharray=[self.line.dashes()] {}
             @if let Some(at) = middle.filter(|_| !self.tag.is_empty()) {
@@ -311,15 +246,4 @@ fn scale_bar(scale: f64, [right, top]: [f64; 2], width: f64) -> (Markup, f64) {
         (Text { anchor: Anchor::Middle, ..Text::at([0.5 * (left + right), y + 15.0], &format!("{} mm", px(length))) }.sized(13.0))
     };
     (bar, right - left + 20.0)
-}
-
-/// Width and height in the header of a PNG file.
-fn png_size(png: &[u8]) -> Option<[f64; 2]> {
-    let header = png
-        .strip_prefix(b"\x89PNG\r\n\x1a\n")?
-        .strip_prefix(&[0, 0, 0, 13])?
-        .strip_prefix(b"IHDR")?;
-    let number = |at: usize| Some(u32::from_be_bytes(header.get(at..at + 4)?.try_into().ok()?));
-    Some([f64::from(number(0)?), f64::from(number(4)?)])
-        .filter(|size| size.iter().all(|length| *length > 0.0))
 }

@@ -134,12 +134,12 @@ impl Playback {
             time: log.time.clone(),
             focus: 0..log.len(),
             poster: log.len().saturating_sub(1),
-            object: Outline::new(&scene.object.shape, f64::INFINITY),
-            pusher: Outline::new(&scene.pusher.shape, f64::INFINITY),
+            object: Outline::new(&scene.object.shape),
+            pusher: Outline::new(&scene.pusher.shape),
             fixels: scene
                 .fixels
                 .iter()
-                .map(|fixel| Outline::new(&fixel.shape, f64::INFINITY).at(&fixel.pose))
+                .map(|fixel| Outline::new(&fixel.shape).at(&fixel.pose))
                 .collect(),
             reference: held(&known, &log.object_out_of_sight()),
             reference_name: "truth".to_owned(),

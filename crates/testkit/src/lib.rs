@@ -13,20 +13,17 @@
 //! - [`Corpus`]: a fixed sequence of hard random problems.
 //! - [`survey`]: results of the solver on it.
 //! - [`hard_steps`]: steps that a solver once failed on, or took long for.
-//! - [`ClosedLoop`]: random scenes that the particle filter follows, every step judged.
 //! - [`pushed_scene`]: a scene with given shapes.
-//! - [`data_root`], [`recorded_cases`]: folder of recorded experiments, and how they are run.
-//! - [`harvest`]: every step of such a run, judged; [`survey_steps`]: a sample of them as hard
-//!   problems.
+//! - [`data_root`]: folder of recorded experiments.
+//! - [`judge`]: outcome of one problem; [`SplitMix64`]: random numbers.
+//! - [`cross`], [`dot`], [`left`]: vectors in the plane.
 
 mod block;
-mod closed_loop;
 mod cone;
 mod conic_program;
 mod corpus;
 mod data;
 mod hard_steps;
-mod harvest;
 mod hull;
 mod impulses;
 mod jam;
@@ -34,7 +31,6 @@ mod manufactured;
 mod mode_equations;
 mod modes;
 mod problem_builder;
-mod recorded_case;
 mod residual;
 mod rng;
 mod scaled_problem;
@@ -44,20 +40,16 @@ mod survey;
 mod vector;
 
 pub use block::{Block, Stop};
-pub use closed_loop::{
-    ClosedLoop, Existence, LoopTally, NotedStep, NotedSteps, PusherPoses, SceneKind, SceneRun,
-    StepAddress,
-};
 pub use cone::{cone_program_step, cone_program_twist};
 pub use corpus::{Corpus, Family};
 pub use data::data_root;
 pub use hard_steps::{HardStep, hard_steps};
-pub use harvest::{Harvest, HarvestOptions, HarvestedStep, MOST_PARTICLES, harvest, survey_steps};
 pub use impulses::impulses_for_twist;
 pub use jam::{gap_margin, is_solvable, may_jam};
 pub use modes::enumerate_modes;
-pub use recorded_case::{RecordedCase, RecordedError, recorded_cases};
 pub use residual::{ResidualRow, residual_rows_si, residual_si};
+pub use rng::{SplitMix64, mix};
 pub use scenes::{disc, fixels, pushed_scene, square};
 pub use speed_limit::{is_sought, judged_residual, speed_limit};
-pub use survey::{Tally, survey};
+pub use survey::{Tally, judge, survey};
+pub use vector::{cross, dot, left};

@@ -1,26 +1,32 @@
 //! SplitMix64 (Steele, Lea & Flood 2014): a generator that is a pure function of its seed, on every
 //! machine.
 
+/// The generator.
 #[derive(Clone, Debug)]
-pub(crate) struct SplitMix64(u64);
+pub struct SplitMix64(u64);
 
 /// The output function: a bijection of 64-bit words that spreads neighbours.
-pub(crate) fn mix(word: u64) -> u64 {
+#[must_use]
+pub fn mix(word: u64) -> u64 {
     let word = (word ^ (word >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     let word = (word ^ (word >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
     word ^ (word >> 31)
 }
 
 impl SplitMix64 {
+    /// The stream of `seed`.
+    #[must_use]
     pub fn new(seed: u64) -> Self {
         Self(seed)
     }
 
     /// The stream number `index` of `seed`.
+    #[must_use]
     pub fn stream(seed: u64, index: u64) -> Self {
         Self(mix(seed ^ mix(index.wrapping_add(0x632b_e59b_d9b4_e019))))
     }
 
+    /// Uniform among all words.
     pub fn word(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         mix(self.0)
@@ -51,6 +57,7 @@ impl SplitMix64 {
         self.below(n) == 0
     }
 
+    /// Plus or minus one.
     pub fn sign(&mut self) -> f64 {
         if self.one_in(2) { 1.0 } else { -1.0 }
     }

@@ -106,7 +106,8 @@ pub fn survey(corpus: &Corpus, range: Range<u64>) -> BTreeMap<Family, Tally> {
 
 /// Solves problem `index` of a set from a cold start; `witness` is a solution of it, where one is
 /// known.
-pub(crate) fn judge(index: u64, problem: &StepProblem, witness: Option<&StepSolution>) -> Tally {
+#[must_use]
+pub fn judge(index: u64, problem: &StepProblem, witness: Option<&StepSolution>) -> Tally {
     let (solution, report) = solve(problem);
     let mut tally = Tally::of_report(index, &report);
     if report.outcome == Outcome::Solved && !is_sought(problem, &solution) {

@@ -3,7 +3,8 @@
 use std::error::Error;
 
 use stickslip::Occlusion;
-use stickslip_testkit::{RecordedCase, data_root, recorded_cases};
+use stickslip_experiments::{RecordedCase, recorded_cases};
+use stickslip_testkit::data_root;
 
 /// The recorded experiment of this name with all of its camera.
 pub fn recorded_case(name: &str) -> Result<RecordedCase, Box<dyn Error>> {

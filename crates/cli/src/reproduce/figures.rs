@@ -1,8 +1,8 @@
 //! Figures 2 to 7 of the paper, ours: [`figures`]. Errors and parameters over all seeds, poses of
 //! the first one.
 
-use anyhow::Result;
 use stickslip::EstimateRow;
+use stickslip::dynamics::Pose;
 use stickslip_evaluation::paper::{PaperExperiment, RunSet};
 use stickslip_evaluation::{
     Reference, ScoredRun,
@@ -11,14 +11,14 @@ use stickslip_evaluation::{
     },
 };
 use stickslip_report::{
-    Colour, Curve, Drawing, FRICTION_PARAMETERS, Figure, FrictionParameter, Line, Mark, Panel,
-    PoseError, TimeFigure, friction_panels, pose_errors,
+    Body, Colour, Curve, Drawing, FRICTION_PARAMETERS, Figure, FrictionParameter, Line, Mark,
+    Overlay, Panel, PoseError, TimeFigure, friction_panels, pose_errors,
 };
-
-use super::camera_view::CameraView;
 
 /// Time shown before the thumb touches (s).
 const BEFORE: f64 = 0.5;
+/// Width of a picture of poses (px).
+const PICTURE: f64 = 294.0;
 
 /// All runs on one experiment, by seed.
 struct Replicates<'a> {
@@ -26,11 +26,11 @@ struct Replicates<'a> {
 }
 
 /// Figures 2 to 7.
-pub fn figures(run_sets: &[RunSet]) -> Result<Vec<Figure>> {
+pub fn figures(run_sets: &[RunSet]) -> Vec<Figure> {
     let a = Replicates::of(run_sets, PaperExperiment::A);
     let b = Replicates::of(run_sets, PaperExperiment::B);
     let camera_on = [Nominal, ParticleNoTouchCameraOn, KalmanCameraOn];
-    Ok(vec![
+    vec![
         Figure::new(
             "fig2",
             a.x_errors(),
@@ -38,8 +38,8 @@ pub fn figures(run_sets: &[RunSet]) -> Result<Vec<Figure>> {
         ),
         Figure::new(
             "fig3",
-            a.poses(&[(300, camera_on), (300, [Nominal, ParticleNoTouch, Kalman])])?,
-            "Figure 3, experiment A, seed 0: the object at the last row, on the camera image. Above with the camera on, below without.",
+            a.poses(&[(300, camera_on), (300, [Nominal, ParticleNoTouch, Kalman])]),
+            "Figure 3, experiment A, seed 0: the object at the last row; grey: truth. Above with the camera on, below without.",
         ),
         Figure::new(
             "fig4",
@@ -53,15 +53,15 @@ pub fn figures(run_sets: &[RunSet]) -> Result<Vec<Figure>> {
         ),
         Figure::new(
             "fig6",
-            b.poses(&[257, 300].map(|row| (row, [Nominal, ParticleNoTouch, Particle])))?,
-            "Figure 6, experiment B, seed 0: the object at the first contact with a fixel (above) and at the last row (below).",
+            b.poses(&[257, 300].map(|row| (row, [Nominal, ParticleNoTouch, Particle]))),
+            "Figure 6, experiment B, seed 0: the object at the first contact with a fixel (above) and at the last row (below); grey: truth.",
         ),
         Figure::new(
             "fig7",
             b.parameters(Particle),
             "Figure 7, experiment B: friction as the particle filter with tactile data estimates it; dashed: its own standard deviation.",
         ),
-    ])
+    ]
 }
 
 impl<'a> Replicates<'a> {
@@ -207,12 +207,15 @@ impl<'a> Replicates<'a> {
     }
 
     /// Poses at rows of the log, one row of pictures for each, one picture for each variant.
-    fn poses(&self, rows: &[(usize, [Variant; 3])]) -> Result<Drawing> {
+    fn poses(&self, rows: &[(usize, [Variant; 3])]) -> Drawing {
         let first = self.first();
-        let camera = CameraView::new(&first.replicate)?;
+        let experiment = &first.replicate.experiment;
+        let scene = &experiment.setup.scene;
+        let body = |pose: Pose, colour| Body::new("", &scene.object.shape, &pose, colour);
         let mut pictures = Vec::new();
         for (row, variants) in rows {
-            let frame = camera.frame(*row);
+            let truth = Reference::of(experiment).pose[*row];
+            let pusher = experiment.log.pusher[*row];
             for (column, variant) in variants.iter().enumerate() {
                 let run = first.run(*variant);
                 let pose = run.and_then(|run| run.estimate.rows.get(*row)?.pose);
@@ -220,9 +223,18 @@ impl<'a> Replicates<'a> {
                     0 => format!("{}, row {row}", variant.paper_title()),
                     _ => variant.paper_title().to_owned(),
                 };
-                pictures.push(frame.with(&title, pose, Colour::of(*variant))?);
+                let mut bodies = Body::surroundings(scene, pusher.as_ref());
+                bodies.extend(truth.map(|pose| body(pose, Colour::INK).filled(0.12)));
+                bodies.extend(pose.map(|pose| body(pose, Colour::of(*variant)).filled(0.25)));
+                let overlay = Overlay {
+                    title,
+                    bodies,
+                    width: PICTURE,
+                    ..Overlay::default()
+                };
+                pictures.push(overlay.drawing());
             }
         }
-        Ok(Drawing::grid(&pictures, 3))
+        Drawing::grid(&pictures, 3)
     }
 }

@@ -295,3 +295,31 @@ fn calibrate_says_what_is_wrong_with_board_and_frames() {
     );
     assert!(!out.join("calibration.toml").exists());
 }
+
+#[test]
+fn prints_of_board_and_tags_are_ready_to_use() {
+    let folder = empty_folder("camera/prints");
+    let at = |name: &str| folder.join(name).display().to_string();
+    fs::write(
+        at("board.toml"),
+        "rows = 2\ncolumns = 3\ntag_size = 0.03\ngap = 0.01\n",
+    )
+    .unwrap();
+    succeeds(stickslip().args(["print", &at("board.svg"), "--board", &at("board.toml")]));
+    succeeds(stickslip().args(["print", &at("tags.svg"), "--tags", "0,1", "--size", "0.03"]));
+    succeeds(stickslip().args(["print", &at("tags.pdf"), "--tags", "0,1", "--size", "0.03"]));
+    assert!(fs::read(at("tags.pdf")).unwrap().starts_with(b"%PDF-1.4"));
+    for (file, tags) in [("board.svg", 6), ("tags.svg", 2)] {
+        let svg = fs::read_to_string(at(file)).unwrap();
+        assert_eq!(svg.matches("id=\"tag").count(), tags, "{file}");
+    }
+    let large = stickslip()
+        .args(["print", &at("x.svg"), "--tags", "0", "--size", "1"])
+        .output()
+        .unwrap();
+    let told = String::from_utf8_lossy(&large.stderr).into_owned();
+    assert!(
+        large.status.code() == Some(1) && told.contains("the paper has"),
+        "{told}"
+    );
+}

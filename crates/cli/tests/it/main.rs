@@ -4,6 +4,7 @@
 
 mod bags;
 mod browser;
+#[cfg(feature = "camera")]
 mod camera;
 mod check;
 mod check_poses;
@@ -13,16 +14,20 @@ mod filter_laws;
 mod fit;
 mod given;
 mod inputs;
+#[cfg(feature = "camera")]
 mod lens;
 mod live;
 mod live_page;
 mod live_recovery;
 mod mcap;
 mod newcomers;
+#[cfg(not(feature = "camera"))]
+mod no_camera;
 mod outputs;
 mod paper_scenes;
 mod program;
 mod reports;
 mod reproduce;
+#[cfg(feature = "camera")]
 mod ros2;
 mod simulate;

@@ -1,12 +1,12 @@
 //! Every figure is a picture whatever its numbers are, and its content lies where it should.
 
 use crate::common::{HALF, disc, experiment, log, setup, square, truth};
-use resvg::tiny_skia::{Color, Pixmap};
+use resvg::tiny_skia::Pixmap;
 use resvg::usvg::{Options, Tree};
 use stickslip_dynamics::Pose;
 use stickslip_report::{
-    Body, CameraImage, Colour, ContactEstimate, ContactLane, ContactTimeline, Curve, Drawing,
-    Level, Mark, Overlay, Panel, ParticleCloud, Scale, TimeFigure, png_of,
+    Body, Colour, ContactEstimate, ContactLane, ContactTimeline, Curve, Drawing, Level, Mark,
+    Overlay, Panel, ParticleCloud, Scale, TimeFigure, png_of,
 };
 
 /// The size of an SVG that must be whole.
@@ -275,58 +275,6 @@ fn an_overlay_lies_where_its_body_is() {
     assert!(
         !has(&shown, at(0.05, 0.052), Colour::VERMILLION)
             && !has(&shown, at(0.02, 0.06), Colour::VERMILLION)
-    );
-}
-
-/// On an image that the caller maps: 2 px for every mm, downwards, from (20, 180); the image lies
-/// below.
-#[test]
-fn an_overlay_on_an_image_follows_the_camera() {
-    let mut image = Pixmap::new(200, 200).unwrap();
-    image.fill(Color::from_rgba8(0, 158, 115, 255));
-    let png = image.encode_png().unwrap();
-    let pixel = |[x, y]: [f64; 2]| (y < 0.085).then_some([20.0 + 2000.0 * x, 180.0 - 2000.0 * y]);
-    let body = Body::new(
-        "",
-        &square(HALF),
-        &Pose::new(0.04, 0.04, 0.0),
-        Colour::VERMILLION,
-    );
-    let overlay = Overlay {
-        bodies: vec![body],
-        width: 224.0,
-        ..Overlay::default()
-    };
-    let shown = pixels(
-        &overlay
-            .to_svg_on(&CameraImage {
-                png: &png,
-                pixel: &pixel,
-            })
-            .unwrap(),
-    );
-    let at = |x: f64, y: f64| pixel([x, y]).unwrap().map(|value| value + 12.0);
-    for side in [
-        at(0.015, 0.05),
-        at(0.065, 0.03),
-        at(0.03, 0.015),
-        at(0.05, 0.065),
-    ] {
-        assert!(has(&shown, side, Colour::VERMILLION), "{side:?}");
-    }
-    assert!(
-        has(&shown, at(0.04, 0.042), Colour::GREEN),
-        "the image shows through"
-    );
-    assert!(
-        overlay
-            .to_svg_on(&CameraImage {
-                png: b"GIF89a",
-                pixel: &pixel
-            })
-            .unwrap_err()
-            .to_string()
-            .contains("no PNG")
     );
 }
 

@@ -4,5 +4,6 @@
 
 mod browser;
 mod common;
+#[cfg(feature = "png")]
 mod figures;
 mod page;

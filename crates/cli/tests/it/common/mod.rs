@@ -1,5 +1,6 @@
 //! Copies of the embedded experiments, to be broken on purpose.
 pub mod page_session;
+#[cfg(feature = "camera")]
 pub mod rendered;
 
 use std::fs;
