@@ -1,9 +1,9 @@
-//! Checks that citations in sources and documents exist: equations and sections of the method,
-//! sections of the formats, decisions, links between documents.
+//! Checks that citations in sources and documents exist: equations and sections of the method and
+//! the robust model, sections of the formats, decisions, links between documents.
 //!
-//! `docs/method.md (7)` cites an equation, `docs/method.md, "Jamming"` a section,
+//! `docs/method.md (7)` and `docs/model.md (33)` cite an equation, `docs/method.md, "Jamming"` a section,
 //! `docs/decisions/004...` or `decision 004` a decision; `paper eq. 3` is the paper's own number.
-//! An equation is a line of the method with `\tag{7}`, or one of a block marked `text` that ends
+//! The equations of both documents are numbered together. An equation is a line with `\tag{7}`, or one of a block marked `text` that ends
 //! with its number.
 
 use crate::finding::Finding;
@@ -11,17 +11,26 @@ use crate::rust_text::names;
 use crate::tree::Tree;
 
 const METHOD: &str = "docs/method.md";
+const MODEL: &str = "docs/model.md";
+
+/// A numbered equation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct Equation {
+    number: usize,
+    document: &'static str,
+    line: usize,
+}
 
 /// Every citation in Rust files and documents.
 pub fn check(tree: &Tree) -> Vec<Finding> {
     let method = tree.text(METHOD).unwrap_or_default();
-    let equations = equations(method);
-    let mut findings = misnumbered(&equations);
+    let mut equations = equations(METHOD, method);
+    let model = tree.text(MODEL).unwrap_or_default();
+    equations.extend(self::equations(MODEL, model));
+    equations.sort_unstable();
+    let mut findings: Vec<Finding> = misnumbered(&equations).into_iter().collect();
     findings.extend(missing_names(tree, method));
-    let known = Known {
-        tree,
-        equations: equations.iter().map(|(n, _)| *n).max().unwrap_or(0),
-    };
+    let known = Known { tree, equations };
     let mut add = |path: &str, text: &str, wrong: Vec<Wrong>| {
         for (at, rule, next) in wrong {
             let line = text[..at].matches('\n').count() + 1;
@@ -35,6 +44,7 @@ pub fn check(tree: &Tree) -> Vec<Finding> {
         add(path, &text, known.wrong_in_comments(&text));
     }
     add(METHOD, method, known.wrong_numbers(method));
+    add(MODEL, model, known.wrong_numbers(model));
     for (path, text) in tree.texts(".md") {
         add(path, text, known.wrong(text));
         add(path, text, known.wrong_links(path, text));
@@ -51,11 +61,16 @@ fn finding(file: &str, line: usize, rule: String, next: &str) -> Finding {
     }
 }
 
-/// Numbers of the method's equations with their lines, in the order of the text.
-fn equations(method: &str) -> Vec<(usize, usize)> {
+/// A document's equations, in the order of the text.
+fn equations(document: &'static str, text: &str) -> Vec<Equation> {
+    let equation = |number, index| Equation {
+        number,
+        document,
+        line: index + 1,
+    };
     let mut equations = Vec::new();
     let mut inside = false;
-    for (index, line) in method.lines().enumerate() {
+    for (index, line) in text.lines().enumerate() {
         if line.starts_with("```") {
             inside = line == "```text";
             continue;
@@ -64,7 +79,7 @@ fn equations(method: &str) -> Vec<(usize, usize)> {
             .split_once("\\tag{")
             .and_then(|(_, rest)| rest.split_once('}'));
         if let Some(number) = tag.and_then(|(n, _)| n.parse().ok()) {
-            equations.push((number, index + 1));
+            equations.push(equation(number, index));
             continue;
         }
         let bare = match line.rfind("[paper") {
@@ -76,29 +91,24 @@ fn equations(method: &str) -> Vec<(usize, usize)> {
             .strip_suffix(')')
             .and_then(|rest| rest.rsplit_once('('));
         if let Some(number) = bracket.and_then(|(_, n)| n.parse().ok()).filter(|_| inside) {
-            equations.push((number, index + 1));
+            equations.push(equation(number, index));
         }
     }
     equations
 }
 
-fn misnumbered(equations: &[(usize, usize)]) -> Vec<Finding> {
-    let mut sorted = equations.to_vec();
-    sorted.sort_unstable();
-    let wrong = sorted
+/// The first of these sorted equations that is out of order.
+fn misnumbered(equations: &[Equation]) -> Option<Finding> {
+    let (wrong, expected) = equations
         .iter()
         .zip(1..)
-        .find(|((number, _), expected)| number != expected);
-    let report = |((number, line), expected): (&(usize, usize), usize)| {
-        let rule = format!("equation ({number}) where ({expected}) is missing or used twice");
-        finding(
-            METHOD,
-            *line,
-            rule,
-            "number the equations from 1 without gaps",
-        )
-    };
-    wrong.map(report).into_iter().collect()
+        .find(|(equation, expected)| equation.number != *expected)?;
+    let rule = format!(
+        "equation ({}) where ({expected}) is missing or used twice",
+        wrong.number
+    );
+    let next = "number the equations of docs/method.md and docs/model.md from 1 without gaps";
+    Some(finding(wrong.document, wrong.line, rule, next))
 }
 
 /// Names in the method's tables that the file named last in their row does not hold.
@@ -144,8 +154,7 @@ fn comments_of(source: &str) -> String {
 /// Targets that can be cited.
 struct Known<'a> {
     tree: &'a Tree,
-    /// The largest number of an equation.
-    equations: usize,
+    equations: Vec<Equation>,
 }
 
 /// A wrong citation: where it stands, the rule, what to do.
@@ -155,14 +164,20 @@ impl Known<'_> {
     /// Wrong citations of any text.
     fn wrong(&self, text: &str) -> Vec<Wrong> {
         let mut wrong = self.wrong_decisions(text);
-        for (at, after) in occurrences(text, METHOD) {
-            let unknown = numbers(after).filter(|n| !(1..=self.equations).contains(n));
-            wrong.extend(unknown.map(|number| {
-                let rule = format!("{METHOD} has no equation ({number})");
-                (at, rule, "cite one that is there")
-            }));
+        for document in [METHOD, MODEL] {
+            let has = |number: &usize| {
+                let mut equations = self.equations.iter();
+                equations.any(|e| e.number == *number && e.document == document)
+            };
+            for (at, after) in occurrences(text, document) {
+                let unknown = numbers(after).filter(|number| !has(number));
+                wrong.extend(unknown.map(|number| {
+                    let rule = format!("{document} has no equation ({number})");
+                    (at, rule, "cite one that is there")
+                }));
+            }
         }
-        for document in [METHOD, "docs/guide/formats.md"] {
+        for document in [METHOD, MODEL, "docs/guide/formats.md"] {
             let titles: Vec<&str> = self.titles(document).collect();
             for (at, after) in occurrences(text, document) {
                 let title = quoted(after).filter(|title| !titles.contains(&title.as_str()));
@@ -175,15 +190,15 @@ impl Known<'_> {
         wrong
     }
 
-    /// Numbers in brackets that no equation of the method has, in the method itself.
-    fn wrong_numbers(&self, method: &str) -> Vec<Wrong> {
+    /// Numbers in brackets that no equation has, in a document with equations.
+    fn wrong_numbers(&self, text: &str) -> Vec<Wrong> {
         let number = |after: &str| after.split(')').next()?.parse::<usize>().ok();
         let unknown = |(at, after)| {
-            let number = number(after).filter(|n| !(1..=self.equations).contains(n))?;
+            let number = number(after).filter(|n| !(1..=self.equations.len()).contains(n))?;
             let rule = format!("there is no equation ({number})");
             Some((at, rule, "name one that is there"))
         };
-        occurrences(method, "(").filter_map(unknown).collect()
+        occurrences(text, "(").filter_map(unknown).collect()
     }
 
     fn wrong_decisions(&self, text: &str) -> Vec<Wrong> {

@@ -80,9 +80,8 @@ pub struct EstimateRow {
     pub pose: Option<Pose>,
     /// Twist.
     pub twist: Option<Twist>,
-    /// Friction parameters. The robust model keeps those of the row in which the camera last saw
-    /// the object, docs/model.md, "Unknowns". `d_tri` is NaN-free: it is ignored where the feet are known
-    /// (see [`Estimate::has_tripod`]).
+    /// Friction parameters. `d_tri` is ignored where the feet are known (see
+    /// [`Estimate::has_tripod`]).
     pub friction: Option<Friction>,
     /// Posterior probability of contact with the pusher.
     pub contact_pusher: Option<f64>,

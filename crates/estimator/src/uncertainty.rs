@@ -95,9 +95,9 @@ impl Uncertainty {
         }
     }
 
-    /// b of docs/model.md (36), the factor of `fixel_position` and `pusher_lag`. The logarithm of the
-    /// rig's roughness is `roughness`, whose own factor is not included. b is `well_measured` on the
-    /// smoother half of rigs, 1 on the others.
+    /// b of docs/model.md (36), the factor of `fixel_position` and `pusher_lag`. The logarithm of
+    /// the rig's roughness is `roughness`, whose own factor is not included. b is `well_measured`
+    /// on the smoother half of rigs, 1 on the others.
     #[inline(always)]
     pub(crate) fn well_measured_at<const W: usize>(&self, roughness: Lanes<W>) -> Lanes<W> {
         let one = Lanes::splat(1.0);

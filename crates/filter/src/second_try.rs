@@ -100,8 +100,8 @@ impl<M: Model> ParticleFilter<M> {
         checkpoint.lineage.clone_from(&self.lineage);
     }
 
-    /// Re-simulates all steps since `checkpoint`, with random numbers of its `number`, from 1 on. Then
-    /// draws particles from the new set and from the sets in `pool`, which the present particles
+    /// Re-simulates all steps since `checkpoint`, with random numbers of its `number`, from 1 on.
+    /// Then draws particles from the new set and from the sets in `pool`, which the present particles
     /// are drawn from. The share of each set is its share of the evidence. The weights become
     /// equal.
     ///

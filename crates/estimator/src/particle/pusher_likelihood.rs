@@ -55,7 +55,7 @@ impl Propagation {
         let lag = setup.uncertainty.pusher_lag;
         let counts = if plan.pusher_is_back { 0.0 } else { 1.0 };
         let further = self.lags_if_it_went_on(transition, plan, chunks);
-        for chunk in 0..chunks {
+        for (chunk, before) in self.lag_before.iter().enumerate().take(chunks) {
             let roughness = load_chunk(
                 block.column(columns.unknown(Name::Roughness, 0)),
                 chunk,
@@ -64,7 +64,7 @@ impl Propagation {
             let std = setup.uncertainty.well_measured_at(roughness) * lag;
             let scale = Lanes::splat(-0.5 * counts) / (std * std);
             let after = squared(self.particles[chunk].pusher_lag);
-            let mut log_likelihood = (after - self.lag_before[chunk]) * scale;
+            let mut log_likelihood = (after - *before) * scale;
             if let Some(further) = &further {
                 let goes_on = ((further[chunk] - after).max(Lanes::ZERO) * scale).exp();
                 let stops = Lanes::splat(1.0) - goes_on * (1.0 - COMMANDED);
@@ -76,8 +76,8 @@ impl Propagation {
         }
     }
 
-    /// Returns, where the pusher stops, the squares of its lags if it went on by `pusher_lag`, chunk
-    /// by chunk. The particles stay as they are.
+    /// Returns, where the pusher stops, the squares of its lags if it went on by `pusher_lag`, of
+    /// each chunk. The particles stay as they are.
     fn lags_if_it_went_on(
         &mut self,
         transition: &Transition<'_>,

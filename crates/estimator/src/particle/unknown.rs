@@ -140,8 +140,9 @@ impl Unknown {
 }
 
 impl Propagation {
-    /// Takes the step (34) of every unknown. Until something has identified it, it is resampled from
-    /// its prior. Afterwards it takes a random step that keeps the prior, while the pusher moves.
+    /// Takes the step (34) of every unknown. Until something has identified it, it is resampled
+    /// from its prior. Afterwards it takes a random step that keeps the prior, while the pusher
+    /// moves.
     pub(super) fn step_unknowns(
         &mut self,
         Transition { setup, columns, .. }: &Transition<'_>,

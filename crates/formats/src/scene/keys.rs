@@ -318,13 +318,13 @@ pub(super) fn key(table: &str, name: &str) -> &'static Key {
         .unwrap_or_else(|| panic!("the format has no key {table}.{name}"))
 }
 
-/// What there is in place of a key that the format no longer has.
+/// Replacement of a key that the format no longer has.
 pub(super) fn instead_of(path: &str) -> Option<&'static str> {
     let (_, instead) = REMOVED.iter().find(|(removed, _)| *removed == path)?;
     Some(instead)
 }
 
-/// Keys of earlier versions, and what there is in their place.
+/// Keys of earlier versions, and their replacements.
 const REMOVED: [(&str, &str); 6] = [
     (
         "uncertainty.drift",
