@@ -193,7 +193,7 @@ mod tests {
             ("estimator", "testkit", "build", "[dev-dependencies]"),
         ] {
             let found = found(own, used, kind);
-            let place = format!("crates/{own}/Cargo.toml:1: ");
+            let place = format!("{}/Cargo.toml:1: ", path(own));
             assert!(
                 found.starts_with(&place) && found.contains(words),
                 "{found}"

@@ -1,10 +1,10 @@
 //! Checks that citations in sources and documents exist: equations and sections of the method and
 //! the robust model, sections of the formats, decisions, links between documents.
 //!
-//! `docs/method.md (7)` and `docs/model.md (33)` cite an equation, `docs/method.md, "Jamming"` a section,
-//! `docs/decisions/004...` or `decision 004` a decision; `paper eq. 3` is the paper's own number.
-//! The equations of both documents are numbered together. An equation is a line with `\tag{7}`, or one of a block marked `text` that ends
-//! with its number.
+//! `docs/method.md (7)` and `docs/model.md (33)` cite an equation, `docs/method.md, "Jamming"` a
+//! section, `docs/decisions/004...` or `decision 004` a decision; `paper eq. 3` is the paper's own
+//! number. The equations of both documents are numbered together. An equation is a line with
+//! `\tag{7}`, or one of a block marked `text` that ends with its number.
 
 use crate::finding::Finding;
 use crate::rust_text::names;

@@ -106,8 +106,8 @@ impl Propagation {
     }
 
     /// Moves objects that nothing has come near yet by a random step. The estimate then follows one
-    /// that is moved by hand within [`FOLLOWED`]: the gain of a Kalman filter is the ratio of such a
-    /// step to the camera's noise.
+    /// that is moved by hand within [`FOLLOWED`]: the gain of a Kalman filter is the ratio of such
+    /// a step to the camera's noise.
     #[inline(always)]
     fn nudge(&mut self, transition: &Transition<'_>, plan: &StepPlan, block: &BlockMut<'_>) {
         let share = NOISE_STEP / FOLLOWED * (plan.duration() / NOISE_STEP).sqrt();

@@ -270,8 +270,6 @@ impl Propagation {
         let Transition { setup, columns, .. } = transition;
         let scene = &setup.scene;
         let per_step = match columns.model() {
-            // at rest unseen nothing would tell the particles apart, and their spread would grow
-            FilterModel::Robust if plan.rests_unseen() => 0.0,
             FilterModel::Robust => setup.uncertainty.force_std,
             FilterModel::Paper => setup.filter.force_std,
         };
@@ -288,7 +286,11 @@ impl Propagation {
             .take(block.len().div_ceil(LANES))
         {
             let disturbed = !self.untouched[chunk];
-            let std = disturbed.zero_unless(particles.friction.mu_s * share);
+            let factor = match columns.model() {
+                FilterModel::Robust => Self::force_factor(transition, plan, block, chunk),
+                FilterModel::Paper => Lanes::splat(1.0),
+            };
+            let std = disturbed.zero_unless(particles.friction.mu_s * share * factor);
             for (k, (impulse, arm)) in particles
                 .applied
                 .fields_mut()

@@ -4,12 +4,34 @@
 use stickslip_dynamics::{Lanes, Pose};
 use stickslip_filter::BlockMut;
 
-use crate::particle::chunk::{Column, LANES};
+use crate::particle::chunk::{Column, LANES, load_chunk};
 use crate::particle::propagation::{Propagation, Transition, load_columns};
+use crate::particle::step_plan::StepPlan;
 use crate::particle::unknown::Name;
 use crate::uncertainty::Uncertainty;
 
 impl Propagation {
+    /// Returns the factor of each particle's random force. While the camera is off it is b^½: a rig
+    /// that is measured well is also smooth. At rest with the camera off it is 0: nothing would tell
+    /// the particles apart, and their spread would only grow.
+    #[inline(always)]
+    pub(super) fn force_factor(
+        Transition { setup, columns, .. }: &Transition<'_>,
+        plan: &StepPlan,
+        block: &BlockMut<'_>,
+        chunk: usize,
+    ) -> Column {
+        if plan.rests_unseen() {
+            return Lanes::ZERO;
+        }
+        if !plan.is_dark() {
+            return Lanes::splat(1.0);
+        }
+        let scale = block.column(columns.unknown(Name::Roughness, 0));
+        let scale = load_chunk(scale, chunk, 0.0);
+        setup.uncertainty.well_measured_at(scale).sqrt()
+    }
+
     /// Loads the offsets of each particle's pusher and fixels from their poses, for all substeps.
     #[inline(always)]
     pub(super) fn load_offsets(
