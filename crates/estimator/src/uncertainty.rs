@@ -29,8 +29,8 @@ pub struct Uncertainty {
     /// Standard deviation of the logarithm of a factor of these offsets: rigs differ.
     pub roughness: f64,
     /// Factor of `fixel_position` and `pusher_lag` on the smoother half of rigs. Its square root is
-    /// that of `force_std` while the camera is off, its fourth root that of `pusher_offset`. A value below 1 means that some rigs are measured much better
-    /// than others.
+    /// that of `force_std` while the camera is off, its fourth root that of `pusher_offset`. A value
+    /// below 1 means that some rigs are measured much better than others.
     pub well_measured: f64,
     /// Standard deviation of the logarithm by which the camera's noise differs from its nominal
     /// value.
