@@ -29,8 +29,8 @@ pub struct Uncertainty {
     /// Standard deviation of the logarithm of a factor of these offsets: rigs differ.
     pub roughness: f64,
     /// Factor of `fixel_position` and `pusher_lag` on the smoother half of rigs. Its square root is
-    /// that of `force_std` while the camera is off, its fourth root that of `pusher_offset`. A value
-    /// below 1 means that some rigs are measured much better than others.
+    /// that of `force_std` while the camera is off, its fourth root that of `pusher_offset`. A
+    /// value below 1 means that some rigs are measured much better than others.
     pub well_measured: f64,
     /// Standard deviation of the logarithm by which the camera's noise differs from its nominal
     /// value.
@@ -119,6 +119,13 @@ impl Uncertainty {
     pub(crate) fn latency_at<const W: usize>(&self, normal: Lanes<W>) -> Lanes<W> {
         let latency = (normal * LATENCY_SPREAD).exp() * self.latency;
         latency.min(Lanes::splat(self.most_latency()))
+    }
+
+    /// Standard deviation of the time by which the camera lags more than the scene says (s).
+    #[must_use]
+    pub fn latency_std(&self) -> f64 {
+        let square = LATENCY_SPREAD * LATENCY_SPREAD;
+        self.latency * libm::exp(0.5 * square) * (libm::exp(square) - 1.0).sqrt()
     }
 
     /// Longest time by which the camera may lag more than the scene says (s).

@@ -102,8 +102,8 @@ impl<M: Model> ParticleFilter<M> {
 
     /// Re-simulates all steps since `checkpoint`, with random numbers of its `number`, from 1 on.
     /// Then draws particles from the new set and from the sets in `pool`, which the present
-    /// particles are drawn from. The share of each set is its share of the evidence. The weights become
-    /// equal.
+    /// particles are drawn from. The share of each set is its share of the evidence. The weights
+    /// become equal.
     ///
     /// Independent particle filters of the same observations, each weighed by its estimate of their
     /// likelihood, act as one filter with as many particles as all have (Del Moral 2004, section

@@ -183,7 +183,7 @@ impl Parameter {
             }
             Self::Latency => {
                 let latency = setup.camera.map_or(0.0, |camera| camera.latency);
-                normal(latency, open.latency)
+                normal(latency, open.latency_std())
             }
         }
     }

@@ -12,8 +12,8 @@ use crate::uncertainty::Uncertainty;
 
 impl Propagation {
     /// Returns the factor of each particle's random force. While the camera is off it is b^½: a rig
-    /// that is measured well is also smooth. At rest with the camera off it is 0: nothing would tell
-    /// the particles apart, and their spread would only grow.
+    /// that is measured well is also smooth. At rest with the camera off it is 0: nothing would
+    /// tell the particles apart, and their spread would only grow.
     #[inline(always)]
     pub(super) fn force_factor(
         Transition { setup, columns, .. }: &Transition<'_>,

@@ -402,15 +402,23 @@ fn who_tells_a_rig_worse_than_most_means_it_on_all_rigs() {
         let text = format!("{LEAST}\n[uncertainty]\n{lines}\n");
         read(&text).uncertainty.well_measured
     };
-    for rough in ["fixel_position = 1e-3", "outline = 1e-3", "latency = 0.1"] {
-        assert_eq!(well_measured(rough), 1.0, "{rough}");
-    }
+    assert_eq!(well_measured("fixel_position = 1e-3"), 1.0);
     for as_most in ["", "fixel_position = 1e-4", "pusher_offset = 1e-3"] {
         assert_eq!(well_measured(as_most), 0.1, "{as_most}");
     }
     assert_eq!(
         well_measured("fixel_position = 1e-3\nwell_measured = 0.5"),
         0.5
+    );
+}
+
+#[test]
+fn key_of_an_earlier_version_is_refused_with_its_replacement() {
+    let text = format!("{LEAST}\n[uncertainty]\ncreep = 0.1\n");
+    let error = refused_text(&text);
+    assert!(
+        error.contains("`uncertainty.creep` is no longer a key: contacts follow Coulomb's law"),
+        "{error}"
     );
 }
 
