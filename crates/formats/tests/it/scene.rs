@@ -415,11 +415,9 @@ fn who_tells_a_rig_worse_than_most_means_it_on_all_rigs() {
 #[test]
 fn key_of_an_earlier_version_is_refused_with_its_replacement() {
     let text = format!("{LEAST}\n[uncertainty]\ncreep = 0.1\n");
-    let error = refused_text(&text);
-    assert!(
-        error.contains("`uncertainty.creep` is no longer a key: contacts follow Coulomb's law"),
-        "{error}"
-    );
+    let place = format!("{}:1", text.lines().count());
+    let words = "`uncertainty.creep` is no longer a key: contacts follow Coulomb's law";
+    refused_text(&text, &place, &[words]);
 }
 
 #[test]
