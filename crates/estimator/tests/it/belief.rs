@@ -246,7 +246,7 @@ fn a_face_that_lies_on_the_pusher_is_known_as_well_as_its_angle() {
         spread_of_a_flush_square(0.0),
         spread_of_a_flush_square(3e-3),
     );
-    assert!(known < 1e-4, "{known}");
+    assert!(known < 5e-4, "{known}");
     // on a rig of nominal roughness; some are smoother
     assert!((1.5e-3..8e-3).contains(&noisy), "{noisy}");
 }

@@ -67,12 +67,13 @@ fn random_force_is_as_large_as_told() {
 
 #[test]
 fn random_force_is_smaller_on_rigs_that_are_measured_well_in_the_dark_alone() {
-    // all rigs lie between the two kinds, where b of (36) is (1 + w)/2
+    // all rigs lie between the two kinds, where b of (36) is (1 + w)/2; the variance is b times as
+    // large
     let uncertainty = Uncertainty {
         roughness: 1e-6,
         ..Uncertainty::default()
     };
-    let between = libm::pow(0.5 * (1.0 + uncertainty.well_measured), 2.0);
+    let between = 0.5 * (1.0 + uncertainty.well_measured);
     for (seeing, expected) in [(true, 1.0), (false, between)] {
         let ratio = mean_square(uncertainty, seeing) / (TOLD * TOLD);
         assert!((ratio / expected - 1.0).abs() < 0.08, "{ratio}, {expected}");
