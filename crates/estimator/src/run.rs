@@ -192,7 +192,10 @@ fn track_smoothed(
             covariance: row_at.object_covariance,
             tactile: &row_at.tactile,
         };
-        let drive = Drive::new(schedule.step(row - 1), schedule.driven(row - 1));
+        let drive = Drive {
+            smoothed: true,
+            ..Drive::new(schedule.step(row - 1), schedule.driven(row - 1))
+        };
         estimate.rows[row].clone_from(match drive.substeps {
             [] => filter.look(measured),
             _ => filter.step(measured, drive),

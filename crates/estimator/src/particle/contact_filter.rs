@@ -53,6 +53,8 @@ pub(crate) struct Drive<'a> {
     pub moves: bool,
     /// True if the pusher is not seen.
     pub unseen: bool,
+    /// True if `moves` knows the rows that follow, so that a stop shows when it begins.
+    pub smoothed: bool,
 }
 
 impl<'a> Drive<'a> {
@@ -62,6 +64,7 @@ impl<'a> Drive<'a> {
             substeps,
             moves,
             unseen: substeps.last().is_some_and(|step| step.pusher.is_none()),
+            smoothed: false,
         }
     }
 }

@@ -212,7 +212,10 @@ impl Propagation {
                 chunk,
                 particles.pusher_lag.each_mut(),
             );
-            particles.limit_pusher_lag(most_lag);
+            // a standing pusher goes on through no jam: what it yielded may be the bodies' compliance
+            if paper || !plan.rests_unseen() {
+                particles.limit_pusher_lag(most_lag);
+            }
             load_columns(
                 block,
                 Columns::WARM_START,

@@ -26,6 +26,7 @@ pub(crate) struct Push {
 impl Push {
     /// Takes a step of `h` seconds. If the pusher stops after a way of `least` (m) or more, it
     /// returns the twist with which it would have gone on. A shorter way may be noise of its poses.
+    /// A causal track shows a stop too late, and tells it from noise too badly.
     pub fn stops(&mut self, drive: &Drive<'_>, h: f64, least: f64) -> Option<Twist> {
         let twist = drive.substeps.last()?.pusher?.twist;
         if drive.moves {
@@ -36,7 +37,7 @@ impl Push {
             return None;
         }
         let Self { twist, way } = std::mem::take(self);
-        (way >= least).then_some(twist)
+        (way >= least && drive.smoothed).then_some(twist)
     }
 }
 
