@@ -30,5 +30,5 @@ fn friction_of_smooth_pushes_is_observed_in_some_and_true_there() {
 
     let sum = |distance: fn(&Placed) -> f64| observed.iter().map(distance).sum::<f64>();
     let nearer = sum(|placed| placed.error) / sum(|placed| placed.prior_error);
-    assert!(nearer < 0.75, "{nearer} of the prior's error");
+    assert!(nearer < 0.85, "{nearer} of the prior's error");
 }
