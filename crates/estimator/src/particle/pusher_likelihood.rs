@@ -69,7 +69,7 @@ impl Propagation {
             if let Some(further) = &further {
                 let goes_on = ((further[chunk] - after).max(Lanes::ZERO) * scale).exp();
                 let stops = Lanes::splat(1.0) - goes_on * (1.0 - COMMANDED);
-                log_likelihood = log_likelihood + (stops * (1.0 / COMMANDED)).ln();
+                log_likelihood += (stops * (1.0 / COMMANDED)).ln();
             }
             let column = columns.felt_log_likelihood();
             let so_far = load_chunk(block.column(column), chunk, 0.0);
