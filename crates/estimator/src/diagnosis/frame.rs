@@ -124,6 +124,10 @@ fn leading(evidence: &Evidence<'_>) -> Option<Finding> {
     let moves = 2.0 * evidence.tolerance();
     let starts =
         (0..log.len()).find(|row| way(&log.pusher, *row).is_some_and(|way| way > moves))?;
+    // fewer poses do not tell when the object began to move
+    if log.object[..=starts].iter().flatten().count() < 5 {
+        return None;
+    }
     let lead = way(&log.object, starts)?;
     let leads = lead > 3.0 * moves && swapped_distance(evidence) < evidence.tolerance();
     leads.then(|| {

@@ -7,6 +7,20 @@ use stickslip::{Log, PoseCovariance, Row, Setup, Tracker, TrackerOptions};
 
 use crate::common::{disc, setup};
 
+/// A data set may have the object's pose at the start and at the end of a push only.
+#[test]
+fn object_that_is_seen_before_and_after_a_push_alone_does_not_lead() {
+    let at = |k: usize| 0.0007 * k as f64;
+    let mut log = Log::default();
+    for k in 0..60 {
+        log.time.push(k as f64 / 30.0);
+        log.pusher.push(Some(Pose::new(at(k) - 0.035, 0.0, 0.0)));
+        let seen = Pose::new(at(k), 0.0, 0.0);
+        log.object.push(Some(seen).filter(|_| k == 0 || k == 59));
+    }
+    assert_eq!(refused(&setup(&[]), &log), None);
+}
+
 /// Gap at the start (m).
 const WAY: f64 = 0.012;
 
