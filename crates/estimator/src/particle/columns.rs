@@ -20,9 +20,6 @@ const FLAGS_PER_FIXEL: usize = 5;
 /// camera's noise.
 const OTHERS: usize = 4;
 
-/// Columns of the robust model for each fixel: the belief about its sensor and its offset.
-const PER_FIXEL: usize = BELIEF_LEN + OFFSET_LEN;
-
 /// Columns of a fixel's offset.
 const OFFSET_LEN: usize = 2;
 
@@ -177,17 +174,12 @@ impl Columns {
 
     /// x of the past pose in ring slot `slot`; y and θ follow.
     pub fn past_pose(&self, slot: usize) -> usize {
-        let unknowns = match self.model {
-            FilterModel::Robust => {
-                let of_rig = UNKNOWNS
-                    .iter()
-                    .map(|unknown| unknown.numbers)
-                    .sum::<usize>();
-                OTHERS + of_rig - OFFSET_LEN + PER_FIXEL * self.fixels
-            }
-            FilterModel::Paper => 0,
+        let first = match self.model {
+            // behind the last fixel's offset
+            FilterModel::Robust => self.unknown(Name::FixelOffset, self.fixels),
+            FilterModel::Paper => self.unknowns(),
         };
-        self.unknowns() + unknowns + 3 * slot
+        first + 3 * slot
     }
 
     /// Number of columns.

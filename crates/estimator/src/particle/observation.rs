@@ -45,8 +45,7 @@ pub struct Observation {
     pub tactile: Vec<Option<bool>>,
     /// True if the step's own likelihood of pusher and sensors counts (robust model).
     pub felt: bool,
-    /// True if the camera's pose may move particles: the object no longer waits where it was first
-    /// seen (robust model).
+    /// True if the camera's pose may move particles (robust model).
     pub moves: bool,
 }
 

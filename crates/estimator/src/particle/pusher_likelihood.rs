@@ -7,8 +7,8 @@ use stickslip_filter::BlockMut;
 use crate::particle::chunk::{Column, LANES, load_chunk, store_chunk};
 use crate::particle::contact_filter::Drive;
 use crate::particle::propagation::{CHUNKS, Propagation, Transition};
+use crate::particle::rig::roughness;
 use crate::particle::step_plan::StepPlan;
-use crate::particle::unknown::Name;
 
 /// Probability that a pusher which stops was commanded to stop just there, over that of a stop by a
 /// jam.
@@ -57,11 +57,7 @@ impl Propagation {
         let counts = if plan.pusher_is_back { 0.0 } else { 1.0 };
         let further = self.lags_if_it_went_on(transition, plan, chunks);
         for (chunk, before) in self.lag_before.iter().enumerate().take(chunks) {
-            let roughness = load_chunk(
-                block.column(columns.unknown(Name::Roughness, 0)),
-                chunk,
-                0.0,
-            );
+            let roughness = roughness(columns, block, chunk);
             let std = setup.uncertainty.well_measured_at(roughness) * lag;
             let scale = Lanes::splat(-0.5 * counts) / (std * std);
             let after = squared(self.particles[chunk].pusher_lag);

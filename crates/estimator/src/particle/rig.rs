@@ -5,6 +5,7 @@ use stickslip_dynamics::{Lanes, Pose};
 use stickslip_filter::BlockMut;
 
 use crate::particle::chunk::{Column, LANES, load_chunk};
+use crate::particle::columns::Columns;
 use crate::particle::propagation::{Propagation, Transition, load_columns};
 use crate::particle::step_plan::StepPlan;
 use crate::particle::unknown::Name;
@@ -27,9 +28,8 @@ impl Propagation {
         if !plan.is_dark() {
             return Lanes::splat(1.0);
         }
-        let scale = block.column(columns.unknown(Name::Roughness, 0));
-        let scale = load_chunk(scale, chunk, 0.0);
-        setup.uncertainty.well_measured_at(scale).sqrt()
+        let roughness = roughness(columns, block, chunk);
+        setup.uncertainty.well_measured_at(roughness).sqrt()
     }
 
     /// Loads the offsets of each particle's pusher and fixels from their poses, for all substeps.
@@ -50,13 +50,7 @@ impl Propagation {
         self.pusher_turn.clear();
         self.fixel_offsets.clear();
         for chunk in 0..block.len().div_ceil(LANES) {
-            let mut roughness = Lanes::ZERO;
-            load_columns(
-                block,
-                columns.unknown(Name::Roughness, 0),
-                chunk,
-                [&mut roughness],
-            );
+            let roughness = roughness(columns, block, chunk);
             let registered = registered(unsure, roughness);
             let scale = registered * unsure.pusher_offset;
             let pusher = offset(columns.unknown(Name::PusherOffset, 0), chunk, scale);
@@ -108,6 +102,16 @@ impl Propagation {
             });
         }
     }
+}
+
+/// Returns the numbers of ln of the rig's scale of one chunk.
+#[inline(always)]
+pub(super) fn roughness(columns: &Columns, block: &BlockMut<'_>, chunk: usize) -> Column {
+    load_chunk(
+        block.column(columns.unknown(Name::Roughness, 0)),
+        chunk,
+        0.0,
+    )
 }
 
 /// Returns the factor of fixels' offsets on a rig so rough.
