@@ -11,7 +11,7 @@ Scores are over the occluded rows until 1.5 s after the last motion; rows at res
 
 - error: root mean square of the pose, angles times the radius of gyration (mm), at most 5 mm for a run
 - CRPS: of a normal belief in x, y and rho theta, added (mm)
-- covers: share of the 90 % intervals that cover the truth
+- covers: share of the 90 % intervals that cover the truth; OLD and the difference
 - evidence: natural logarithm, per log
 
 Differences are NEW minus OLD, means over logs with their standard errors; a log counts once, with the mean of its
@@ -145,7 +145,7 @@ def run(program, experiment, seed, args):
             return None
         score = experiment.score(table(Path(out) / "estimate.csv"), args.camera_on)
         summary = json.loads(done.stdout)
-        return score and (*score, summary["log_evidence"] or 0.0, seconds, summary["second_tries"] or 0)
+        return score and (*score, summary["log_evidence"] or 0.0, seconds)
 
 
 def mean(numbers):
@@ -163,16 +163,15 @@ def with_error(numbers, digits):
 def line(name, logs):
     """One line of the table; `logs` has a pair of means over seeds for each log."""
     both = list(zip(*logs, strict=True))
-    of = [[[score[k] for score in scores] for k in range(6)] for scores in both]
-    change = [[new - old for old, new in zip(of[0][k], of[1][k], strict=True)] for k in range(6)]
+    of = [[[score[k] for score in scores] for k in range(5)] for scores in both]
+    change = [[new - old for old, new in zip(of[0][k], of[1][k], strict=True)] for k in range(5)]
     median = [sorted(side[0])[len(logs) // 2] for side in of]
     cells = [
         f"{name:24} {len(logs):5}",
         f"{median[0]:6.3f} {median[1]:6.3f}",
         f"{with_error(change[0], 3):>16} {with_error(change[1], 3):>16}",
-        f"{100 * mean(of[0][2]):5.1f} {100 * mean(of[1][2]):5.1f}",
+        f"{100 * mean(of[0][2]):5.1f} {with_error([100 * c for c in change[2]], 1):>12}",
         f"{with_error(change[3], 1):>14}",
-        f"{mean(of[0][5]):5.1f} {mean(of[1][5]):5.1f}",
         f"{sum(of[1][4]) / sum(of[0][4]):5.2f}",
     ]
     print("  ".join(cells), flush=True)
@@ -196,8 +195,8 @@ def main():
     args = parser.parse_args(words[:cut])
     args.options = words[cut + 1 :]
 
-    head = ["", "logs", "median old, new", "error, mm", "CRPS, mm", "covers, %", "evidence", "re-sim.", "time"]
-    widths = [24, 5, 13, 16, 16, 11, 14, 11, 5]
+    head = ["", "logs", "median old, new", "error, mm", "CRPS, mm", "covers, %", "evidence", "time"]
+    widths = [24, 5, 13, 16, 16, 18, 14, 5]
     print(f"{head[0]:24} {head[1]:>5}  " + "  ".join(f"{h:>{w}}" for h, w in zip(head[2:], widths[2:], strict=True)))
     everything = []
     for folder in args.folders:

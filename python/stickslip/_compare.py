@@ -50,7 +50,7 @@ def compare(
     runs and all runs.
 
     Returns a dict per run: ``folder``, ``variant``, ``seed``, the scores of
-    :func:`stickslip.score`, and ``warnings``, ``observed``, ``log_evidence``, ``resimulations`` and
+    :func:`stickslip.score`, and ``warnings``, ``observed``, ``log_evidence`` and
     ``collapses`` of :class:`stickslip.Estimate`.
     """
     chosen = list(variants)
@@ -141,6 +141,5 @@ class _Experiment:
             "warnings": list(estimate.warnings),
             "observed": estimate.observed,
             "log_evidence": estimate.log_evidence,
-            "resimulations": estimate.resimulations,
             "collapses": estimate.collapses,
         }

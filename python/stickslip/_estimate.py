@@ -22,8 +22,6 @@ class Estimate(dict[str, NDArray[np.float64]]):
     #: ln of the evidence of the log, up to a constant of the log. The scene or model with the
     #: higher one predicts the log better. None for methods without particles.
     log_evidence: float | None
-    #: Number of re-simulations of the steps since an occlusion began.
-    resimulations: int
     #: Number of rows at which no particle explained the camera's pose and all were resampled.
     collapses: int
 
@@ -32,5 +30,4 @@ class Estimate(dict[str, NDArray[np.float64]]):
         self.warnings = tuple(facts["warnings"])
         self.observed = dict(facts["observed"])
         self.log_evidence = facts["log_evidence"]
-        self.resimulations = facts["resimulations"]
         self.collapses = facts["collapses"]

@@ -134,11 +134,6 @@ class Tracker:
         return self._tracker.log_evidence
 
     @property
-    def resimulations(self) -> int:
-        """Number of re-simulations of the steps since an occlusion began."""
-        return self._tracker.resimulations
-
-    @property
     def collapses(self) -> int:
         """Number of rows at which no particle explained the camera's pose and all were resampled."""
         return self._tracker.collapses

@@ -19,7 +19,7 @@ const EXEMPT: [&str; 1] = ["docs/log/"];
 const EXEMPT_SECTION: (&str, &str) = ("docs/method.md", "## Contact mode");
 
 /// Phrases that do not occur, in lower case, and the term in their place.
-const REPLACED: [(&str, &str); 22] = [
+const REPLACED: [(&str, &str); 20] = [
     ("told", "nominal, configured or prior"),
     ("anew", "again, or `resampled from the prior`"),
     ("beside", "next to, with"),
@@ -38,9 +38,7 @@ const REPLACED: [(&str, &str); 22] = [
     ("give way", "yield"),
     ("gave way", "yielded"),
     ("thins out", "loses diversity"),
-    ("made again", "re-simulated, recomputed"),
-    ("second try", "re-simulation"),
-    ("second tries", "re-simulations"),
+    ("made again", "recomputed"),
     ("paper mode", "paper's model"),
 ];
 

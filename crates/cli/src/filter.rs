@@ -52,7 +52,6 @@ struct Summary<'a> {
     /// Of those, the ones whose solver gave up; the others have no solution.
     failed: u64,
     collapses: u32,
-    second_tries: u32,
     /// ln of the evidence of the log.
     log_evidence: Option<f64>,
     /// Reasons to doubt the scores.
@@ -230,7 +229,6 @@ impl<'a> Summary<'a> {
             unsolved: run.unsolved,
             failed: run.failed,
             collapses: run.collapses,
-            second_tries: run.second_tries,
             log_evidence: run.log_evidence,
             warnings,
             real_time_factor: experiment.log.duration() / seconds,
@@ -306,7 +304,6 @@ fn score_table(summary: &Summary<'_>) -> Table {
     row("unsolved particle steps", summary.unsolved.to_string(), "");
     row("of them failed", summary.failed.to_string(), "");
     row("collapses", summary.collapses.to_string(), "");
-    row("re-simulations", summary.second_tries.to_string(), "");
     row(
         "real-time factor",
         format!("{:.1}", summary.real_time_factor),

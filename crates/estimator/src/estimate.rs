@@ -76,7 +76,7 @@ impl Spread {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct EstimateRow {
     /// Pose; theta is unwrapped from the row before. The robust model publishes the geometric
-    /// median of the particles, docs/model.md (49), the paper's model their mean.
+    /// median of the particles, docs/model.md (42), the paper's model their mean.
     pub pose: Option<Pose>,
     /// Twist.
     pub twist: Option<Twist>,

@@ -1,7 +1,6 @@
 //! Options of a run: [`RunOptions`].
 
 use crate::filter_model::FilterModel;
-use crate::moves::Moves;
 use crate::occlusion::Occlusion;
 use crate::pusher::track::Tracking;
 
@@ -53,8 +52,8 @@ pub struct RunOptions {
     pub substeps: Option<u32>,
     /// Rows whose object poses are hidden from the method.
     pub occlusion: Occlusion,
-    /// Ways to move particles to where weighing alone would leave few (robust model).
-    pub moves: Moves,
+    /// True if camera poses move particles as well as weigh them (robust model; docs/model.md (45)).
+    pub camera_moves: bool,
 }
 
 impl Default for RunOptions {
@@ -68,7 +67,7 @@ impl Default for RunOptions {
             tracking: Tracking::Smoothed,
             substeps: None,
             occlusion: Occlusion::None,
-            moves: Moves::default(),
+            camera_moves: true,
         }
     }
 }

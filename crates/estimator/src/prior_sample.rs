@@ -8,7 +8,6 @@ use stickslip_filter::{Purpose, Streams};
 use crate::error::RunError;
 use crate::filter_model::FilterModel;
 use crate::log::Log;
-use crate::moves::Moves;
 use crate::occlusion::Occlusion;
 use crate::options::{RunOptions, TactileUse};
 use crate::particle::camera_noise::NoisePrior;
@@ -64,8 +63,7 @@ impl PriorSample {
         let first = log.object.iter().position(Option::is_some);
         let first = first.ok_or(RunError::NoObjectPose { rows: log.len() })?;
 
-        // the motion. Re-simulations would favour what agrees with the pusher, as `chance` does
-        // already
+        // the motion
         let options = RunOptions {
             model,
             particles: 1,
@@ -74,10 +72,6 @@ impl PriorSample {
             occlusion: Occlusion::Rows {
                 from: first + 1,
                 to: None,
-            },
-            moves: Moves {
-                second_tries: false,
-                ..Moves::default()
             },
             ..RunOptions::default()
         };

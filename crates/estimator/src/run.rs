@@ -28,10 +28,6 @@ pub struct Run {
     /// Number of rows at which no particle explained the camera pose, so that all were
     /// reinitialised around it.
     pub collapses: u32,
-    /// Number of re-simulations, with new random numbers, of the steps since an occlusion began.
-    /// They happen when the particles explain pusher and touch ever worse (robust model;
-    /// docs/model.md (42)).
-    pub second_tries: u32,
     /// ln of the evidence of the log, up to a constant of the log. Of two scenes or two models, the
     /// one with the higher evidence predicted camera poses and tactile readings better. Rows at
     /// which the filter collapsed are left out. `None` for methods without particles.
@@ -137,7 +133,6 @@ fn run_prepared(
         failed: all(|row| row.failed),
         estimate,
         collapses: particle.collapses,
-        second_tries: particle.second_tries,
         log_evidence: particle.log_evidence,
     })
 }
@@ -146,7 +141,6 @@ fn run_prepared(
 #[derive(Clone, Copy, Debug, Default)]
 struct ParticleRun {
     collapses: u32,
-    second_tries: u32,
     log_evidence: Option<f64>,
 }
 
@@ -171,7 +165,7 @@ fn track_smoothed(
         particles: options.particles,
         seed: options.seed,
         late: 0.0,
-        moves: options.moves,
+        camera_moves: options.camera_moves,
         observer: *observer,
     };
     let start = PoseAt {
@@ -205,7 +199,6 @@ fn track_smoothed(
     }
     let run = ParticleRun {
         collapses: filter.collapses(),
-        second_tries: filter.second_tries(),
         log_evidence: Some(filter.log_evidence()),
     };
     Ok((estimate, run))
@@ -232,7 +225,6 @@ fn track_causal(
     }
     let run = ParticleRun {
         collapses: tracker.collapses(),
-        second_tries: tracker.second_tries(),
         log_evidence: Some(tracker.log_evidence()),
     };
     Ok((estimate, run))

@@ -8,7 +8,6 @@ use crate::diagnosis::{Finding, collapsed, left_out_poses};
 use crate::error::RunError;
 use crate::estimate::EstimateRow;
 use crate::filter_model::FilterModel;
-use crate::moves::Moves;
 use crate::options::{RunOptions, TactileUse};
 use crate::particle::contact_filter::{ContactFilter, Drive, Measured};
 use crate::particle::filter_options::FilterOptions;
@@ -54,8 +53,8 @@ pub struct TrackerOptions {
     /// Longest time (s) by which a row may be behind the latest one and still count. The particles
     /// keep their poses for as long.
     pub late: f64,
-    /// Ways to move particles to where weighing alone would leave few (robust model).
-    pub moves: Moves,
+    /// True if camera poses move particles as well as weigh them (robust model; docs/model.md (45)).
+    pub camera_moves: bool,
 }
 
 impl Default for TrackerOptions {
@@ -77,7 +76,7 @@ impl TrackerOptions {
             tactile: options.tactile,
             substeps: options.substeps,
             late: 0.0,
-            moves: options.moves,
+            camera_moves: options.camera_moves,
         }
     }
 
@@ -118,8 +117,6 @@ pub struct StepSize {
 ///
 /// After the first rows, a row on one thread allocates nothing, except
 ///
-/// - at the first contact, where the particles that learn friction are created,
-/// - while the camera is off, because rows are kept for re-simulation,
 /// - where the number of particles changes,
 /// - where a step needs the search over contact modes.
 ///
@@ -221,7 +218,7 @@ impl<'o> Tracker<'o> {
             particles: self.options.particles,
             seed: self.options.seed,
             late: self.options.late,
-            moves: self.options.moves,
+            camera_moves: self.options.camera_moves,
             observer: self.observer,
         }
     }
@@ -391,12 +388,6 @@ impl<'o> Tracker<'o> {
         let left_out = left_out_poses(self.pusher_poses_left_out() as usize, "");
         let collapsed = collapsed(self.collapses(), self.seen);
         left_out.into_iter().chain(collapsed).collect()
-    }
-
-    /// Number of re-simulations of the steps since an occlusion began, see
-    /// [`Run::second_tries`](crate::Run::second_tries).
-    pub fn second_tries(&self) -> u32 {
-        self.filter.as_ref().map_or(0, ContactFilter::second_tries)
     }
 
     /// ln of the evidence of the rows so far, see [`Run::log_evidence`](crate::Run::log_evidence);

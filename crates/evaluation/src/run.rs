@@ -41,8 +41,6 @@ pub struct ScoredRun {
     pub failed: u64,
     /// Rows at which no particle explained the camera.
     pub collapses: u32,
-    /// Number of re-simulations of the steps since an occlusion began.
-    pub second_tries: u32,
     /// ln of the evidence of the log, see [`Run::log_evidence`].
     pub log_evidence: Option<f64>,
 }
@@ -87,7 +85,6 @@ impl ScoredRun {
             unsolved,
             failed,
             collapses,
-            second_tries,
             log_evidence,
         } = run;
         let hidden = occlusion.hidden(&experiment.log);
@@ -100,7 +97,6 @@ impl ScoredRun {
             unsolved,
             failed,
             collapses,
-            second_tries,
             log_evidence,
         }
     }

@@ -29,15 +29,13 @@ pub enum Ingredient {
     Latency,
     /// Touch.
     Touch,
-    /// Re-simulation of steps, (42).
-    SecondTries,
     /// Camera poses that move particles, (45).
     CameraMoves,
 }
 
 impl Ingredient {
     /// All of them.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 12] = [
         Self::FrictionPriors,
         Self::Support,
         Self::Force,
@@ -49,7 +47,6 @@ impl Ingredient {
         Self::CameraNoise,
         Self::Latency,
         Self::Touch,
-        Self::SecondTries,
         Self::CameraMoves,
     ];
 
@@ -68,14 +65,13 @@ impl Ingredient {
             Self::CameraNoise => "nominal camera noise",
             Self::Latency => "nominal latency",
             Self::Touch => "no touch",
-            Self::SecondTries => "no re-simulation, (42)",
             Self::CameraMoves => "weighing alone, (45)",
         }
     }
 
     /// Takes it out of a run.
     pub fn remove_from(self, setup: &mut Setup, options: &mut RunOptions) {
-        let (unknown, moves) = (&mut setup.uncertainty, &mut options.moves);
+        let unknown = &mut setup.uncertainty;
         match self {
             Self::FrictionPriors => unknown.friction = Friction::default(),
             Self::Support => *unknown = unknown.with_known_feet(),
@@ -88,8 +84,7 @@ impl Ingredient {
             Self::CameraNoise => unknown.camera_noise = 0.0,
             Self::Latency => unknown.latency = 0.0,
             Self::Touch => options.tactile = TactileUse::Ignored,
-            Self::SecondTries => moves.second_tries = false,
-            Self::CameraMoves => moves.camera = false,
+            Self::CameraMoves => options.camera_moves = false,
         }
     }
 }

@@ -1,9 +1,7 @@
 //! Agreement of few particles with the belief of model and data: [`Agreement`] with a reference of
 //! very many particles. It shows whether an error is owed to sampling or to the model.
 
-use stickslip::{
-    Estimate, FilterModel, Moves, RunError, RunOptions, Tracking, quantile, run, wrapped,
-};
+use stickslip::{Estimate, FilterModel, RunError, RunOptions, Tracking, quantile, run, wrapped};
 
 use stickslip_evaluation::paper::{Replicate, RunSettings};
 use stickslip_evaluation::{ScoredRun, Scores, Variant};
@@ -30,12 +28,8 @@ impl Agreement {
     /// # Errors
     /// Those of [`stickslip::run`].
     pub fn of(replicate: &Replicate, few: usize, many: usize) -> Result<Self, RunError> {
-        let few = scored(replicate, few, Moves::default())?;
-        let alone = Moves {
-            camera: false,
-            ..Moves::default()
-        };
-        let reference = scored(replicate, many, alone)?;
+        let few = scored(replicate, few, true)?;
+        let reference = scored(replicate, many, false)?;
         let hidden = replicate.occlusion.hidden(&replicate.experiment.log);
         let pairs = apart(&few.estimate, &reference.estimate, |row| hidden[row]);
         let squares: f64 = pairs.iter().map(|(distance, _)| distance * distance).sum();
@@ -50,7 +44,11 @@ impl Agreement {
 }
 
 /// One run with touch.
-fn scored(replicate: &Replicate, particles: usize, moves: Moves) -> Result<ScoredRun, RunError> {
+fn scored(
+    replicate: &Replicate,
+    particles: usize,
+    camera_moves: bool,
+) -> Result<ScoredRun, RunError> {
     let Replicate { experiment, .. } = replicate;
     let conditions = replicate.conditions(RunSettings {
         model: FilterModel::Robust,
@@ -58,7 +56,7 @@ fn scored(replicate: &Replicate, particles: usize, moves: Moves) -> Result<Score
         tracking: Tracking::Smoothed,
     });
     let options = RunOptions {
-        moves,
+        camera_moves,
         ..conditions.options(Variant::Particle)
     };
     let run = run(&experiment.setup, &experiment.log, &options, &mut |_| ())?;

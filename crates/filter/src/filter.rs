@@ -6,7 +6,6 @@ use crate::lineage::Lineage;
 use crate::model::{Model, WeightedSums};
 use crate::particles::{BLOCK, ParticleSet};
 use crate::report::{StepReport, WeightUpdate};
-use crate::second_try::keep_failed_out;
 use crate::settings::{Settings, SettingsError};
 use crate::streams::{Draw, Purpose, Streams};
 use crate::threads::parallel::PerThread;
@@ -34,13 +33,6 @@ pub struct ParticleFilter<M: Model> {
     /// The sums over every block, and over all.
     block_sums: Vec<M::Sums>,
     sums: M::Sums,
-}
-
-/// Sums over the particles after a step: taken, or left out since more steps follow.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Summing {
-    On,
-    Off,
 }
 
 impl<M: Model> ParticleFilter<M> {
@@ -100,16 +92,6 @@ impl<M: Model> ParticleFilter<M> {
     /// model allows it, an observation also moves the particles: as far as weighing alone would
     /// leave few, or as far as the model asks for.
     pub fn step(&mut self, input: &M::Input, observation: Option<&M::Observation>) -> StepReport {
-        self.make_step(input, observation, Summing::On)
-    }
-
-    /// One time step.
-    pub(crate) fn make_step(
-        &mut self,
-        input: &M::Input,
-        observation: Option<&M::Observation>,
-        summing: Summing,
-    ) -> StepReport {
         self.step += 1;
         self.observed = 0;
         self.lineage.begin_step();
@@ -117,14 +99,13 @@ impl<M: Model> ParticleFilter<M> {
         if resampled {
             self.choose_ancestors(Purpose::Resample);
         }
-        self.pass_over_blocks(resampled, (input, observation), summing == Summing::On);
+        self.pass_over_blocks(resampled, input, observation);
         let (weight_update, judged) = match observation {
             Some(observation) => self.update_weights(observation),
             None => (WeightUpdate::Unobserved, None),
         };
         self.lineage.end_step();
         match weight_update {
-            _ if summing == Summing::Off => {}
             WeightUpdate::Unobserved => self.combine_sums(|_| 1.0),
             WeightUpdate::Weighed { .. } if self.bridge.parted() => self.recompute_sums(input),
             WeightUpdate::Weighed { .. } => self.combine_sums(BlockWeights::scale),
@@ -156,7 +137,10 @@ impl<M: Model> ParticleFilter<M> {
     /// Draws the ancestors by the weights, which become equal.
     fn choose_ancestors(&mut self, purpose: Purpose) {
         let draw = self.draw(purpose);
-        keep_failed_out(&self.model, &self.particles, &mut self.weights);
+        let (model, particles) = (&self.model, &self.particles);
+        self.weights.keep_only(|particle| {
+            model.may_be_copied(&particles.block(particle / BLOCK), particle % BLOCK)
+        });
         self.settings
             .resampling
             .ancestors(self.weights.weights(), draw, &mut self.ancestors);
@@ -201,8 +185,8 @@ impl<M: Model> ParticleFilter<M> {
     fn pass_over_blocks(
         &mut self,
         resample: bool,
-        (input, observation): (&M::Input, Option<&M::Observation>),
-        with_sums: bool,
+        input: &M::Input,
+        observation: Option<&M::Observation>,
     ) {
         let draw = self.draw(Purpose::Propagate);
         let (model, scratch, weights) = (&self.model, &self.scratch, &self.weights);
@@ -226,9 +210,7 @@ impl<M: Model> ParticleFilter<M> {
                 };
 
                 // estimate
-                if with_sums {
-                    model.sum(input, block, weights, sums);
-                }
+                model.sum(input, block, weights, sums);
             });
     }
 

@@ -24,12 +24,12 @@ impl Lineage {
     pub(crate) fn new(particles: usize) -> Self {
         let mut lineage = Self {
             roots: vec![0; particles],
-            parents: Vec::with_capacity(2 * particles),
+            parents: Vec::with_capacity(particles),
             spare: vec![0; particles],
             generation: 0,
             before_step: 0,
             over: true,
-            counted: Vec::with_capacity(2 * particles),
+            counted: Vec::with_capacity(particles),
         };
         lineage.begin_step();
         lineage.begin_generation();
@@ -77,19 +77,6 @@ impl Lineage {
             std::mem::swap(ancestry, &mut self.spare);
         }
     }
-
-    /// Like [`follow`](Self::follow), with ancestors of this set or of `other`, whose numbers
-    /// follow on from this set's. Both have roots of one generation, but parents of their own.
-    pub(crate) fn follow_both(&mut self, other: &Self, ancestors: &[u32]) {
-        assert_eq!(self.generation, other.generation, "one generation");
-        let (here, before) = (self.roots.len(), self.before_step as u32);
-        self.roots.extend_from_slice(&other.roots);
-        self.parents
-            .extend(other.parents.iter().map(|i| before + i));
-        self.before_step += other.before_step;
-        self.follow(ancestors);
-        debug_assert_eq!(self.roots.len(), here, "as many as before");
-    }
 }
 
 /// Numbers the particles.
@@ -98,22 +85,6 @@ fn number(ancestry: &mut [u32]) {
         .iter_mut()
         .zip(0..)
         .for_each(|(number, i)| *number = i);
-}
-
-impl Clone for Lineage {
-    fn clone(&self) -> Self {
-        let mut lineage = Self::new(0);
-        lineage.clone_from(self);
-        lineage
-    }
-
-    /// Allocates nothing where as many were kept.
-    fn clone_from(&mut self, other: &Self) {
-        self.roots.clone_from(&other.roots);
-        self.parents.clone_from(&other.parents);
-        (self.generation, self.before_step) = (other.generation, other.before_step);
-        self.over = other.over;
-    }
 }
 
 /// Number of different numbers below `below` among `of`.
@@ -155,20 +126,5 @@ mod tests {
         assert_eq!((lineage.parents(), lineage.ancestors()), (2, 2));
         lineage.begin_generation();
         assert_eq!(lineage.ancestors(), 5);
-    }
-
-    #[test]
-    fn two_sets_of_one_generation_share_their_ancestors() {
-        let (mut a, mut b) = (Lineage::new(3), Lineage::new(3));
-        a.follow(&[0, 0, 1]);
-        b.follow(&[2, 1, 1]);
-        for lineage in [&mut a, &mut b] {
-            lineage.end_step();
-            lineage.begin_step();
-        }
-
-        // particle 2 of the first set, and 1 and 2 of the other, all of ancestor 1
-        a.follow_both(&b, &[2, 4, 5]);
-        assert_eq!((a.parents(), a.ancestors()), (3, 1));
     }
 }

@@ -80,43 +80,6 @@ impl ParticleSet {
         gathered
     }
 
-    /// Becomes a copy of `other`; allocates nothing where the two are of one size.
-    pub(crate) fn copy_from(&mut self, other: &Self) {
-        if (self.particles, self.columns) == (other.particles, other.columns) {
-            self.data.copy_from_slice(&other.data);
-        } else {
-            *self = other.clone();
-        }
-    }
-
-    /// Particle i becomes a copy of particle `ancestors[i]` of this set, or, counted on, of
-    /// `other`.
-    ///
-    /// # Panics
-    /// If the sets are not of one size, there is not one ancestor for each particle, or one is in
-    /// neither set.
-    pub(crate) fn gather_from(&mut self, other: &Self, ancestors: &[u32]) {
-        assert_eq!(self.columns, other.columns, "columns of both sets");
-        assert_eq!(ancestors.len(), self.particles, "an ancestor for each");
-        let stride = self.columns * BLOCK;
-        let mut gathered = std::mem::take(&mut self.spare);
-        let value = |column: usize, particle: usize| {
-            let (data, particle) = match particle.checked_sub(self.particles) {
-                None => (&self.data, particle),
-                Some(counted_on) => (&other.data, counted_on),
-            };
-            data[particle / BLOCK * stride + column * BLOCK + particle % BLOCK]
-        };
-        for (block, ancestors) in gathered.chunks_mut(stride).zip(ancestors.chunks(BLOCK)) {
-            for (column, target) in block.chunks_exact_mut(BLOCK).enumerate() {
-                for (to, ancestor) in target.iter_mut().zip(ancestors) {
-                    *to = value(column, *ancestor as usize);
-                }
-            }
-        }
-        self.spare = std::mem::replace(&mut self.data, gathered);
-    }
-
     /// The number N of particles.
     #[expect(clippy::len_without_is_empty, reason = "a particle set is never empty")]
     pub fn len(&self) -> usize {

@@ -41,8 +41,6 @@ pub enum Purpose {
     Measure = 6,
     /// Resampling to another number of particles.
     Resize = 7,
-    /// Resampling from the particles of two tries.
-    SecondTry = 8,
     /// Noise of the measurements that particles are moved to.
     Move = 9,
 }
@@ -79,14 +77,6 @@ impl Streams {
     /// Streams of this seed for another purpose.
     pub fn of(self, purpose: Purpose) -> Self {
         Streams { purpose, ..self }
-    }
-
-    /// Other streams of the same seed, of attempt number `attempt`; 0 are the streams themselves.
-    pub(crate) fn attempt(self, attempt: u64) -> Self {
-        // far from the seeds that users count up
-        const APART: u64 = 0x9e37_79b9_7f4a_7c15;
-        let seed = self.seed ^ attempt.wrapping_mul(APART);
-        Streams { seed, ..self }
     }
 
     /// The streams at one step, below 2^56.

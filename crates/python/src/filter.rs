@@ -49,7 +49,6 @@ pub fn filter<'py>(
         observed(py, &LearnedParameter::all(&run.estimate))?,
     )?;
     facts.set_item("log_evidence", run.log_evidence)?;
-    facts.set_item("resimulations", run.second_tries)?;
     facts.set_item("collapses", run.collapses)?;
     Ok((to_dict(py, estimate_columns(&run.estimate))?, facts))
 }

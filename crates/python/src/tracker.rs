@@ -143,12 +143,6 @@ impl Tracker {
         self.with(py, |state| state.tracker.log_evidence())
     }
 
-    /// Re-simulations so far.
-    #[getter]
-    fn resimulations(&self, py: Python<'_>) -> u32 {
-        self.with(py, |state| state.tracker.second_tries())
-    }
-
     /// Rows at which no particle explained the camera.
     #[getter]
     fn collapses(&self, py: Python<'_>) -> u32 {

@@ -10,7 +10,6 @@ use crate::covariance::PoseCovariance;
 use crate::error::RunError;
 use crate::estimate::EstimateRow;
 use crate::filter_model::FilterModel;
-use crate::moves::Moves;
 use crate::particle::camera_trust::CameraTrust;
 use crate::particle::filter_options::FilterOptions;
 use crate::particle::hidden_pusher::HiddenPusher;
@@ -21,7 +20,6 @@ use crate::particle::noise_clock::NoiseClock;
 use crate::particle::observation::{Observation, PoseAt};
 use crate::particle::pose_clock::PoseClock;
 use crate::particle::pusher_likelihood::Push;
-use crate::particle::replay::Replay;
 use crate::particle::step_plan::{ParameterNoise, StepPlan};
 use crate::particle::summary::summarise;
 use crate::particle::sums::Reference;
@@ -88,13 +86,12 @@ pub(crate) struct ContactFilter<'o> {
     /// ln of the likelihood that the particles gave to the rows so far.
     log_evidence: f64,
     trust: CameraTrust,
-    replay: Replay,
     pusher: HiddenPusher,
     push: Push,
     /// The latest camera pose.
     shown: Pose,
-    /// Ways to move particles to where weighing would leave few.
-    moves: Moves,
+    /// True if camera poses may move particles (robust model).
+    camera_moves: bool,
 }
 
 impl<'o> ContactFilter<'o> {
@@ -132,11 +129,10 @@ impl<'o> ContactFilter<'o> {
             collapsed: false,
             log_evidence: 0.0,
             trust: CameraTrust::default(),
-            replay: Replay::default(),
             pusher: HiddenPusher::default(),
             push: Push::default(),
             shown: pose,
-            moves: options.moves,
+            camera_moves: options.camera_moves && options.model == FilterModel::Robust,
         };
         this.filter.recompute_sums(&this.plan);
         this.summarise();
@@ -163,23 +159,18 @@ impl<'o> ContactFilter<'o> {
         self.observation.tactile.extend(tactile);
         let contact = self.model() == FilterModel::Robust;
         self.observation.felt = contact;
-        self.observation.moves = self.camera_moves();
+        self.observation.moves = self.camera_moves;
 
         self.expect_pose(was_unwatched);
-        let tries = self.moves.second_tries && self.plan.is_dark();
-        self.replay.before(&mut self.filter, tries);
         let observation = Some(&self.observation).filter(|observation| !observation.is_empty());
         let report = self.filter.step(&self.plan, observation);
         self.take(&report);
         if let WeightUpdate::Weighed { log_evidence } = report.weight_update {
             self.log_evidence += log_evidence;
         }
-        let row = (&self.plan, &self.observation);
-        let tried = self.replay.after(&mut self.filter, row, &report);
-        self.log_evidence += tried.unwrap_or_default();
         self.summarise();
         self.latest.collapsed = Some(self.collapsed);
-        self.latest.resampled = Some(report.resampled || tried.is_some());
+        self.latest.resampled = Some(report.resampled);
         self.latest.visual = measured.object.is_some();
         if self.latest.visual {
             self.filter.count_ancestors_from_now();
@@ -192,7 +183,6 @@ impl<'o> ContactFilter<'o> {
         if particles == self.count() {
             return;
         }
-        self.replay.forget();
         let resized = self.filter.resize(particles.get() as usize);
         resized.expect("a u32 from 1 up is a number of particles");
     }
@@ -214,11 +204,6 @@ impl<'o> ContactFilter<'o> {
     fn is_new(&mut self, pose: Pose) -> bool {
         let before = std::mem::replace(&mut self.shown, pose);
         pose != before || self.model() == FilterModel::Paper
-    }
-
-    /// Returns true if camera poses may move particles.
-    fn camera_moves(&self) -> bool {
-        self.model() == FilterModel::Robust && self.moves.camera
     }
 
     /// Decides before a camera pose whether it is accepted even if no particle explains it. It is
@@ -336,12 +321,11 @@ impl<'o> ContactFilter<'o> {
         self.observation.latency = self.history.at(time - self.latency);
         self.observation.tactile.clear();
         self.observation.felt = false;
-        self.observation.moves = self.camera_moves();
+        self.observation.moves = self.camera_moves;
         self.expect_pose(false);
         let report = self.filter.observe(&self.plan, &self.observation);
         self.take(&report);
         self.camera.late_pose();
-        self.replay.forget();
         self.summarise();
         self.filter.count_ancestors_from_now();
         self.latest.collapsed = Some(self.collapsed);
@@ -379,11 +363,6 @@ impl<'o> ContactFilter<'o> {
     /// reinitialised around it.
     pub fn collapses(&self) -> u32 {
         self.collapses
-    }
-
-    /// Number of re-simulations of the steps since an occlusion began.
-    pub fn second_tries(&self) -> u32 {
-        self.replay.tries()
     }
 
     /// ln of the evidence of the rows so far: the likelihood that the particles gave them, up to a

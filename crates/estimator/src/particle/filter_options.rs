@@ -3,7 +3,6 @@
 use stickslip_filter::{Resampling, Settings};
 
 use crate::filter_model::FilterModel;
-use crate::moves::Moves;
 use crate::particle::observer::Observer;
 use crate::setup::Setup;
 
@@ -18,8 +17,8 @@ pub(crate) struct FilterOptions<'o> {
     pub seed: u64,
     /// Longest time before the latest row at which late poses may show the object (s).
     pub late: f64,
-    /// Ways to move particles to where weighing would leave few (robust model).
-    pub moves: Moves,
+    /// True if camera poses may move particles (robust model).
+    pub camera_moves: bool,
     /// Observer of every time step.
     pub observer: Option<&'o dyn Observer>,
 }

@@ -1,4 +1,4 @@
-//! Geometric median of the particles' poses: [`way_to_median`], docs/model.md (49).
+//! Geometric median of the particles' poses: [`way_to_median`], docs/model.md (42).
 
 use stickslip_dynamics::{Lanes, Level, Pose, on_widest};
 use stickslip_filter::{Block, ParticleFilter};

@@ -22,7 +22,6 @@ pub(crate) mod observer;
 pub(crate) mod pose_clock;
 pub(crate) mod propagation;
 mod pusher_likelihood;
-mod replay;
 mod rig;
 mod step_plan;
 mod summary;

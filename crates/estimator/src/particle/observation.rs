@@ -50,25 +50,6 @@ pub struct Observation {
 }
 
 impl Observation {
-    /// Becomes a copy of `other`, in the memory that it has.
-    pub(crate) fn overwrite(&mut self, other: &Self) {
-        let Self {
-            pose,
-            covariance,
-            time,
-            past,
-            latency,
-            tactile,
-            felt,
-            moves,
-        } = other;
-        self.past.clone_from(past);
-        self.tactile.clone_from(tactile);
-        (self.pose, self.covariance) = (*pose, *covariance);
-        (self.time, self.latency) = (*time, *latency);
-        (self.felt, self.moves) = (*felt, *moves);
-    }
-
     /// Returns true if nothing was read.
     pub fn is_empty(&self) -> bool {
         self.pose.is_none() && !self.felt && self.tactile.iter().all(Option::is_none)

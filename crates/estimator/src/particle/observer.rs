@@ -21,7 +21,7 @@ pub struct SolvedStep<'a> {
     pub report: Report,
 }
 
-/// Observer of the time steps of a run, including substeps and re-simulated steps, with all
+/// Observer of the time steps of a run, including substeps, with all
 /// contacts that could act. Steps of the particles that learn friction are not shown.
 ///
 /// The steps of a block of 128 particles come in order from one thread. Those of a larger set come

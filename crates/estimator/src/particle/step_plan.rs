@@ -55,31 +55,6 @@ pub struct StepPlan {
 }
 
 impl StepPlan {
-    /// Becomes a copy of `other`, in the memory that it has.
-    pub(crate) fn overwrite(&mut self, other: &Self) {
-        let Self {
-            substeps,
-            driven,
-            parameter_noise,
-            noise_age,
-            unseen_pusher,
-            pusher_is_back,
-            stopped,
-            slot,
-            seen,
-            tactile,
-            reference,
-        } = other;
-        self.substeps.clone_from(substeps);
-        self.tactile.clone_from(tactile);
-        self.seen.overwrite(seen);
-        (self.driven, self.parameter_noise) = (*driven, *parameter_noise);
-        self.noise_age = *noise_age;
-        (self.unseen_pusher, self.slot) = (*unseen_pusher, *slot);
-        (self.pusher_is_back, self.stopped) = (*pusher_is_back, *stopped);
-        self.reference = *reference;
-    }
-
     /// Length of the step (s).
     pub(crate) fn duration(&self) -> f64 {
         self.substeps.iter().map(|step| step.h).sum()

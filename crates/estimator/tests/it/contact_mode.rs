@@ -3,9 +3,7 @@
 
 use crate::common::{RATE, log, setup, slippery, sticky};
 use stickslip::dynamics::Pose;
-use stickslip::{
-    Estimate, FilterModel, Log, Method, Moves, Occlusion, Run, RunOptions, Setup, Tracking, run,
-};
+use stickslip::{Estimate, FilterModel, Log, Method, Occlusion, Run, RunOptions, Setup, run};
 
 /// Speed of the pusher (m/s), and time at which it meets the disc (s).
 const SPEED: f64 = 0.02;
@@ -184,15 +182,8 @@ fn a_jam_that_gives_way_ends_where_the_camera_shows_it() {
 fn blind(setup: &Setup, log: &Log) -> Run {
     let options = RunOptions {
         particles: 400,
-        ..RunOptions::default()
-    };
-    blind_with(setup, log, options)
-}
-
-fn blind_with(setup: &Setup, log: &Log, options: RunOptions) -> Run {
-    let options = RunOptions {
         occlusion: Occlusion::Rows { from: 5, to: None },
-        ..options
+        ..RunOptions::default()
     };
     run(setup, log, &options, &mut |_| ()).expect("a run")
 }
@@ -214,35 +205,6 @@ fn a_pusher_that_goes_on_says_that_nothing_jams() {
     };
     let [deaf, hears] = [1e3, 3e-4].map(error);
     assert!(hears < 0.5 * deaf, "{hears} m, without the pusher {deaf} m");
-}
-
-#[test]
-fn a_fork_that_few_particles_take_is_found_by_second_tries() {
-    let (slippery, log) = slippery();
-    let sticky = sticky(&slippery, 0.8);
-    let found = |second_tries: bool, tracking: Tracking| {
-        let ends_near = |seed: &u64| {
-            let options = RunOptions {
-                particles: 20,
-                seed: *seed,
-                tracking,
-                moves: Moves {
-                    second_tries,
-                    ..Moves::default()
-                },
-                ..RunOptions::default()
-            };
-            final_error(&blind_with(&sticky, &log, options), &log) < 5e-3
-        };
-        (0..20).filter(ends_near).count()
-    };
-    for tracking in [Tracking::Smoothed, Tracking::Causal] {
-        let [once, again] = [false, true].map(|second_tries| found(second_tries, tracking));
-        assert!(
-            once < 3 && again > once + 4,
-            "{tracking:?}: of 20 runs {again}, without second tries {once}"
-        );
-    }
 }
 
 #[test]

@@ -197,7 +197,6 @@ mod tests {
             unsolved: 0,
             failed: 0,
             collapses: 0,
-            second_tries: 0,
             log_evidence: None,
         };
         (0..seeds).map(run).collect()

@@ -13,7 +13,6 @@ mod least_moved;
 mod linear_gaussian;
 mod particle_set;
 mod resampling;
-mod second_try;
 mod streams;
 mod threads;
 mod weights;

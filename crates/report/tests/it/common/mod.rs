@@ -135,7 +135,6 @@ fn scored(variant: Variant, estimate: Estimate, off: f64) -> ScoredRun {
         unsolved: 0,
         failed: 0,
         collapses: 0,
-        second_tries: 0,
         log_evidence: None,
     }
 }
