@@ -52,7 +52,8 @@ pub struct RunOptions {
     pub substeps: Option<u32>,
     /// Rows whose object poses are hidden from the method.
     pub occlusion: Occlusion,
-    /// True if camera poses move particles as well as weigh them (robust model; docs/model.md (45)).
+    /// True if camera poses move particles as well as weigh them (robust model; docs/model.md
+    /// (45)).
     pub camera_moves: bool,
 }
 

@@ -2,7 +2,7 @@
 
 use std::sync::Mutex;
 
-use stickslip_dynamics::{Body, Friction, Lanes, Mask, Pose};
+use stickslip_dynamics::{Body, Friction, Lanes, Pose};
 use stickslip_filter::{Purpose, Streams};
 
 use crate::error::RunError;
@@ -12,7 +12,7 @@ use crate::occlusion::Occlusion;
 use crate::options::{RunOptions, TactileUse};
 use crate::particle::camera_noise::NoisePrior;
 use crate::particle::observer::{Observer, SolvedStep};
-use crate::particle::touch_channel::{DrawnSensor, TouchChannel, felt_or_idle};
+use crate::particle::touch_channel::{DrawnSensor, TouchChannel, felt};
 use crate::particle::view::ParticleView;
 use crate::run::run_observed;
 use crate::setup::{Camera, Setup};
@@ -134,7 +134,7 @@ struct Witness<'a> {
 #[derive(Debug, Default)]
 struct WitnessState {
     rows: Vec<Witnessed>,
-    /// Impulse and gap of each fixel in the latest step, in the units of [`felt_or_idle`].
+    /// Impulse and gap of each fixel in the latest step, in the units of [`felt`].
     contacts: Vec<(f64, f64)>,
 }
 
@@ -180,21 +180,19 @@ impl Observer for Witness<'_> {
 
     fn on_row(&self, _: usize, particles: &ParticleView<'_>) {
         let mut state = self.state.lock().expect("one thread");
-        let idle = particles.is_idle(0);
-        let felt = |&(impulse, gap): &(f64, f64)| match self.model {
-            FilterModel::Robust => {
-                let idle = Mask::splat(idle);
-                felt_or_idle(Lanes([impulse]), Lanes([gap]), idle).0[0]
-            }
-            FilterModel::Paper => f64::from(u8::from(impulse > 1.0)),
-        };
+        let contacts = state.contacts.iter().enumerate();
+        let touch = contacts.map(|(j, (impulse, gap))| match self.model {
+            FilterModel::Robust => felt(Lanes([*impulse]), Lanes([*gap])).0[0],
+            FilterModel::Paper => f64::from(u8::from(particles.touches_fixel(0, j))),
+        });
+        let touch = touch.collect();
         let row = Witnessed {
             truth: SampledState {
                 pose: particles.pose(0),
                 friction: particles.friction(0),
             },
             shown: particles.shown_pose(0),
-            touch: state.contacts.iter().map(felt).collect(),
+            touch,
         };
         state.rows.push(row);
     }

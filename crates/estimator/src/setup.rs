@@ -27,7 +27,7 @@ pub struct Tactile {
     pub false_positive: f64,
     /// Probability that a touched sensor reads 0.
     pub false_negative: f64,
-    /// Force at which the sensor switches (N) (docs/method.md (22)).
+    /// Force at which the sensor switches (N) (docs/model.md (38)).
     pub touch_force: f64,
 }
 

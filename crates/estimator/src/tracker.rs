@@ -53,7 +53,8 @@ pub struct TrackerOptions {
     /// Longest time (s) by which a row may be behind the latest one and still count. The particles
     /// keep their poses for as long.
     pub late: f64,
-    /// True if camera poses move particles as well as weigh them (robust model; docs/model.md (45)).
+    /// True if camera poses move particles as well as weigh them (robust model; docs/model.md
+    /// (45)).
     pub camera_moves: bool,
 }
 

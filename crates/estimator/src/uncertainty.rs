@@ -29,8 +29,8 @@ pub struct Uncertainty {
     /// Standard deviation of the logarithm of a factor of these offsets: rigs differ.
     pub roughness: f64,
     /// Factor of `fixel_position` and `pusher_lag` on the smoother half of rigs. Its square root is
-    /// that of `force_std` while the camera is off, its fourth root that of `pusher_offset`. A
-    /// value below 1 means that some rigs are measured much better than others.
+    /// that of `force_std` while the camera is off. A value below 1 means that some rigs are
+    /// measured much better than others.
     pub well_measured: f64,
     /// Standard deviation of the logarithm by which the camera's noise differs from its nominal
     /// value.
@@ -106,12 +106,6 @@ impl Uncertainty {
         }
         let smooth = one / (one + (roughness * (BETWEEN_HALVES * self.roughness)).exp());
         one - smooth * (1.0 - self.well_measured)
-    }
-
-    /// b^¼, the factor of `pusher_offset`.
-    #[inline(always)]
-    pub(crate) fn well_registered_at<const W: usize>(&self, roughness: Lanes<W>) -> Lanes<W> {
-        self.well_measured_at(roughness).sqrt().sqrt()
     }
 
     /// Time by which the camera lags more than the scene says (s), of a standard normal number.

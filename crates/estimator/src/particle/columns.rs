@@ -11,10 +11,10 @@ const WARM: usize = stickslip_dynamics::WarmStart::LEN;
 const BITS: usize = 52;
 
 /// Flags that do not belong to a fixel.
-const SINGLE: usize = 11;
+const SINGLE: usize = 10;
 
 /// Flags of each fixel.
-const FLAGS_PER_FIXEL: usize = 5;
+const FLAGS_PER_FIXEL: usize = 4;
 
 /// Columns of the robust model that are no unknowns of [`UNKNOWNS`]: the log-likelihood and the
 /// camera's noise.
@@ -69,18 +69,15 @@ impl Columns {
     /// True if the last step of a particle had no certified solution.
     pub const UNSOLVED: Flag = Self::flag(1);
     /// True if that step had neither a solution nor a proof that there is none.
-    pub const FAILED: Flag = Self::flag(3);
-    /// True if nothing drove the particle in its last step: the pusher stood, or the particle
-    /// rested out of its way.
-    pub const IDLE: Flag = Self::flag(2);
+    pub const FAILED: Flag = Self::flag(2);
 
     /// True if the pusher ever was so near that contacts with it were sought (robust model).
-    pub const PUSHER_WAS_NEAR: Flag = Self::flag(8);
+    pub const PUSHER_WAS_NEAR: Flag = Self::flag(7);
 
     /// Slip of the object on the pusher.
     pub const SLIP_PUSHER: SlipFlags = SlipFlags {
-        stick: Self::flag(9),
-        left: Self::flag(10),
+        stick: Self::flag(8),
+        left: Self::flag(9),
     };
 
     /// The layout for `fixels` fixels and `history` past poses.
@@ -116,7 +113,7 @@ impl Columns {
 
     /// True if friction parameter `k` (in the order of its columns) ever took part (robust model).
     pub fn felt(k: usize) -> Flag {
-        Self::flag(4 + k)
+        Self::flag(3 + k)
     }
 
     /// c_j: true if fixel j touches.
@@ -124,14 +121,9 @@ impl Columns {
         Self::flag(SINGLE + fixel)
     }
 
-    /// Contact flag of fixel j in the last step in which the object was driven.
-    pub fn driven_contact_fixel(&self, fixel: usize) -> Flag {
-        Self::flag(SINGLE + self.fixels + fixel)
-    }
-
     /// Slip of the object on fixel j.
     pub fn slip_fixel(&self, fixel: usize) -> SlipFlags {
-        let first = SINGLE + 3 * self.fixels + 2 * fixel;
+        let first = SINGLE + 2 * self.fixels + 2 * fixel;
         SlipFlags {
             stick: Self::flag(first),
             left: Self::flag(first + 1),
@@ -140,7 +132,7 @@ impl Columns {
 
     /// True if fixel j ever was so near that contacts with it were sought (robust model).
     pub fn fixel_was_near(&self, fixel: usize) -> Flag {
-        Self::flag(SINGLE + 2 * self.fixels + fixel)
+        Self::flag(SINGLE + self.fixels + fixel)
     }
 
     /// First column after the flags.
@@ -208,15 +200,10 @@ mod tests {
             Columns::CONTACT_PUSHER,
             Columns::UNSOLVED,
             Columns::FAILED,
-            Columns::IDLE,
             Columns::PUSHER_WAS_NEAR,
         ];
         let of_fixels = (0..FIXELS).flat_map(|j| {
-            let flags = [
-                columns.contact_fixel(j),
-                columns.driven_contact_fixel(j),
-                columns.fixel_was_near(j),
-            ];
+            let flags = [columns.contact_fixel(j), columns.fixel_was_near(j)];
             flags.into_iter().chain(of_slip(columns.slip_fixel(j)))
         });
         let felt = (0..4).map(Columns::felt);

@@ -11,6 +11,7 @@ use crate::error::RunError;
 use crate::estimate::EstimateRow;
 use crate::filter_model::FilterModel;
 use crate::particle::camera_trust::CameraTrust;
+use crate::particle::contact_flags::TOUCHING;
 use crate::particle::filter_options::FilterOptions;
 use crate::particle::hidden_pusher::HiddenPusher;
 use crate::particle::history::PoseHistory;
@@ -19,7 +20,7 @@ use crate::particle::model::ContactModel;
 use crate::particle::noise_clock::NoiseClock;
 use crate::particle::observation::{Observation, PoseAt};
 use crate::particle::pose_clock::PoseClock;
-use crate::particle::pusher_likelihood::Push;
+use crate::particle::pusher_likelihood::{Push, speed};
 use crate::particle::step_plan::{ParameterNoise, StepPlan};
 use crate::particle::summary::summarise;
 use crate::particle::sums::Reference;
@@ -246,6 +247,7 @@ impl<'o> ContactFilter<'o> {
 
     /// Writes the plan of the step to a row.
     fn plan_step(&mut self, measured: &Measured<'_>, drive: Drive<'_>) {
+        let columns = self.filter.model().columns();
         let plan = &mut self.plan;
         plan.substeps.clear();
         plan.substeps.extend_from_slice(drive.substeps);
@@ -273,6 +275,12 @@ impl<'o> ContactFilter<'o> {
                 self.pusher.unseen(scene, plan.duration(), hidden_object)
             }
         };
+        if let Some(pusher) = drive.substeps.last().and_then(|step| step.pusher)
+            && drive.moves
+            && columns.model() == FilterModel::Paper
+        {
+            plan.touching = TOUCHING.max(speed(&pusher.twist) * plan.duration());
+        }
         let least = self.filter.model().setup().uncertainty.pusher_lag;
         plan.stopped = self.push.stops(&drive, plan.duration(), least);
         plan.slot = self.history.push(measured.time);

@@ -8,6 +8,9 @@ use crate::particle::columns::{Columns, SlipFlags};
 use crate::particle::propagation::{Propagation, Transition, moving};
 use crate::particle::step_plan::StepPlan;
 
+/// Gap up to which bodies touch (m).
+pub(super) const TOUCHING: f64 = 1e-4;
+
 /// Slip velocity (m/s) above which a contact slides.
 const SLIDING: f64 = 1e-4;
 
@@ -22,9 +25,14 @@ impl Propagation {
         flags: &mut FlagsMut<'_, '_>,
     ) {
         let Transition { setup, columns, .. } = transition;
-        let presses = |body| self.work.normal_impulses(chunk, body);
         let rho = setup.scene.object.gyration_radius();
         let moves = moving(&self.particles[chunk].twist, rho);
+        let gap = |body| self.work.gaps(chunk, body);
+        let near = |body| gap(body).lt(Lanes::splat(f64::INFINITY));
+        let touches = |body| {
+            let presses = self.work.normal_impulses(chunk, body).gt(Lanes::ZERO);
+            presses | !gap(body).gt(Lanes::splat(plan.touching))
+        };
 
         // bodies that touch while nothing moves go on touching: the pusher's track is noisy
         let pusher_was_near = flags.get(Columns::PUSHER_WAS_NEAR);
@@ -33,42 +41,32 @@ impl Propagation {
             FilterModel::Paper => Mask::splat(false),
         };
 
-        // the pusher
-        let pusher = presses(Body::Pusher).gt(Lanes::ZERO);
-        let near = self.near(chunk, Body::Pusher);
-        let goes_on = rests & near & flags.get(Columns::CONTACT_PUSHER);
-        // a hidden pusher that carries the object along touches it, too
+        // the pusher; a hidden one that carries the object along touches it, too
+        let pusher = Body::Pusher;
         let carried = moving(&self.carried[chunk], rho);
-        let touches = pusher | self.close(transition, chunk, Body::Pusher) | goes_on | carried;
-        flags.set(Columns::CONTACT_PUSHER, touches);
+        let goes_on = rests & near(pusher) & flags.get(Columns::CONTACT_PUSHER);
+        let touched = touches(pusher) | goes_on | carried;
+        flags.set(Columns::CONTACT_PUSHER, touched);
         // what a standing pusher seems to move is the noise of its track
         let slides_from = Lanes::splat(match plan.pusher_stands() {
             true => f64::INFINITY,
             false => SLIDING,
         });
-        let slip = self.work.slips(chunk, Body::Pusher);
-        store_slip(flags, Columns::SLIP_PUSHER, touches, (slip, slides_from));
-        flags.set(Columns::PUSHER_WAS_NEAR, pusher_was_near | near | carried);
-        let pressed = moves | pusher;
-        flags.set(Columns::IDLE, !(pressed & Mask::splat(plan.driven)));
+        let slip = self.work.slips(chunk, pusher);
+        store_slip(flags, Columns::SLIP_PUSHER, touched, (slip, slides_from));
+        let was_near = pusher_was_near | near(pusher) | carried;
+        flags.set(Columns::PUSHER_WAS_NEAR, was_near);
 
         // the fixels
-        let last_h = plan.substeps.last().map_or(0.0, |step| step.h);
-        let touch_impulse = Lanes::splat(setup.tactile.touch_force * last_h);
         for j in 0..setup.scene.fixels.len() {
             let body = Body::Fixel(j);
-            let felt = presses(body).gt(touch_impulse);
-            let near = self.near(chunk, body);
-            let goes_on = rests & near & flags.get(columns.contact_fixel(j));
-            let touches = felt | self.close(transition, chunk, body) | goes_on;
-            flags.set(columns.contact_fixel(j), touches);
+            let goes_on = rests & near(body) & flags.get(columns.contact_fixel(j));
+            let touched = touches(body) | goes_on;
+            flags.set(columns.contact_fixel(j), touched);
             let slip = self.work.slips(chunk, body);
-            store_slip(flags, columns.slip_fixel(j), touches, (slip, slides_from));
+            store_slip(flags, columns.slip_fixel(j), touched, (slip, slides_from));
             let before = flags.get(columns.fixel_was_near(j));
-            flags.set(columns.fixel_was_near(j), before | near);
-            let against = columns.driven_contact_fixel(j);
-            let before = flags.get(against);
-            flags.set(against, pressed & felt | !pressed & before);
+            flags.set(columns.fixel_was_near(j), before | near(body));
         }
     }
 }

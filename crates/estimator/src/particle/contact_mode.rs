@@ -4,14 +4,13 @@
 use stickslip_dynamics::{Body, Friction, Lanes, Mask, Offsets, StepInput, Twist, on_widest};
 use stickslip_filter::{BlockMut, Draw};
 
-use crate::filter_model::FilterModel;
 use crate::particle::chunk::{Column, FlagsMut, LANES, flag, load_chunk, store_chunk};
 use crate::particle::columns::Columns;
 use crate::particle::noise_clock::NOISE_STEP;
 use crate::particle::propagation::{Propagation, Transition, load_columns, store_columns};
 use crate::particle::pusher_likelihood::squared;
 use crate::particle::step_plan::StepPlan;
-use crate::particle::touch_channel::{TouchChannel, felt_or_idle};
+use crate::particle::touch_channel::{TouchChannel, felt};
 use crate::setup::Limits;
 use crate::uncertainty::JITTER;
 
@@ -21,9 +20,6 @@ const REST_PAIR: u32 = UNSEEN_PAIR + 2;
 
 /// Time within which the estimate follows an object that is moved by hand (s).
 const FOLLOWED: f64 = 1.0;
-
-/// Gap up to which bodies count as touching in the estimate (m).
-const TOUCHING: f64 = 1e-4;
 
 impl Propagation {
     /// Draws the unknowns for one step.
@@ -184,28 +180,6 @@ impl Propagation {
         dynamics.step_block_offset(input, offsets, particles, &mut self.work);
     }
 
-    /// Returns the lanes in which a body is so close that it counts as touching; none in the
-    /// paper's model.
-    #[inline(always)]
-    pub(super) fn close(
-        &self,
-        transition: &Transition<'_>,
-        chunk: usize,
-        body: Body,
-    ) -> Mask<LANES> {
-        match transition.columns.model() {
-            FilterModel::Robust => !self.work.gaps(chunk, body).gt(Lanes::splat(TOUCHING)),
-            FilterModel::Paper => Mask::splat(false),
-        }
-    }
-
-    /// Returns the lanes in which contacts with a body were sought and found, touching or not.
-    #[inline(always)]
-    pub(super) fn near(&self, chunk: usize, body: Body) -> Mask<LANES> {
-        let far = Lanes::splat(f64::INFINITY);
-        self.work.gaps(chunk, body).lt(far)
-    }
-
     /// Weighs what is known without the camera at the end of the step: the readings of the sensors
     /// and the pusher's place.
     pub(super) fn feel(
@@ -253,9 +227,7 @@ impl Propagation {
                 };
                 let impulse = self.work.normal_impulses(chunk, Body::Fixel(j)) / threshold;
                 let gap = self.work.gaps(chunk, Body::Fixel(j)) / touch_gap;
-                let idle = flag(&block.as_block(), Columns::IDLE, chunk);
-                let touch = felt_or_idle(impulse, gap, idle);
-                let (after, log_likelihood) = channel.read(belief, touch, reading);
+                let (after, log_likelihood) = channel.read(belief, felt(impulse, gap), reading);
                 let log_likelihood = log_likelihood - Lanes::splat(most);
                 store_columns(block, columns.sensor(j), chunk, after.fields());
                 let column = columns.felt_log_likelihood();

@@ -102,7 +102,8 @@ impl Propagation {
     }
 }
 
-fn speed(twist: &Twist) -> f64 {
+/// Speed of a pusher (m/s).
+pub(super) fn speed(twist: &Twist) -> f64 {
     libm::hypot(twist.vx, twist.vy)
 }
 

@@ -9,7 +9,6 @@ use crate::particle::columns::Columns;
 use crate::particle::propagation::{Propagation, Transition, load_columns};
 use crate::particle::step_plan::StepPlan;
 use crate::particle::unknown::Name;
-use crate::uncertainty::Uncertainty;
 
 impl Propagation {
     /// Returns the factor of each particle's random force. While the camera is off it is b^½: a rig
@@ -51,9 +50,9 @@ impl Propagation {
         self.fixel_offsets.clear();
         for chunk in 0..block.len().div_ceil(LANES) {
             let roughness = roughness(columns, block, chunk);
-            let registered = registered(unsure, roughness);
-            let scale = registered * unsure.pusher_offset;
-            let pusher = offset(columns.unknown(Name::PusherOffset, 0), chunk, scale);
+            let scale = (roughness * unsure.roughness).exp();
+            let of_pusher = scale * unsure.pusher_offset;
+            let pusher = offset(columns.unknown(Name::PusherOffset, 0), chunk, of_pusher);
             self.pusher_offsets.push(pusher);
             if pusher_turn > 0.0 {
                 let mut turn = Lanes::ZERO;
@@ -63,12 +62,12 @@ impl Propagation {
                     chunk,
                     [&mut turn],
                 );
-                self.pusher_turn.push(turn * (registered * pusher_turn));
+                self.pusher_turn.push(turn * (scale * pusher_turn));
             }
-            let scale = measured(unsure, roughness) * unsure.fixel_position;
+            let of_fixels = scale * unsure.well_measured_at(roughness) * unsure.fixel_position;
             let fixels = 0..columns.fixels();
             let fixels =
-                fixels.map(|j| offset(columns.unknown(Name::FixelOffset, j), chunk, scale));
+                fixels.map(|j| offset(columns.unknown(Name::FixelOffset, j), chunk, of_fixels));
             self.fixel_offsets.extend(fixels);
         }
     }
@@ -112,16 +111,4 @@ pub(super) fn roughness(columns: &Columns, block: &BlockMut<'_>, chunk: usize) -
         chunk,
         0.0,
     )
-}
-
-/// Returns the factor of fixels' offsets on a rig so rough.
-#[inline(always)]
-fn measured(unsure: &Uncertainty, roughness: Column) -> Column {
-    (roughness * unsure.roughness).exp() * unsure.well_measured_at(roughness)
-}
-
-/// Returns the factor of the pusher's offset on a rig so rough.
-#[inline(always)]
-fn registered(unsure: &Uncertainty, roughness: Column) -> Column {
-    (roughness * unsure.roughness).exp() * unsure.well_registered_at(roughness)
 }

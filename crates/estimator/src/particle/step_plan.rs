@@ -2,6 +2,7 @@
 
 use stickslip_dynamics::{StepInput, Twist};
 
+use crate::particle::contact_flags::TOUCHING;
 use crate::particle::observation::Observation;
 use crate::particle::sums::Reference;
 
@@ -43,6 +44,8 @@ pub struct StepPlan {
     /// Twist with which the pusher would have gone on, if it stops at the end of the step (robust
     /// model).
     pub stopped: Option<Twist>,
+    /// Gap up to which bodies touch (m), (22).
+    pub touching: f64,
     /// History slot for the pose at the end of the step, where past poses are kept.
     pub slot: usize,
     /// Observation that weighed the particles at the row before, from which they learn the camera's
@@ -87,6 +90,7 @@ impl StepPlan {
             unseen_pusher: None,
             pusher_is_back: false,
             stopped: None,
+            touching: TOUCHING,
             slot: 0,
             seen: Observation::default(),
             tactile: Vec::new(),

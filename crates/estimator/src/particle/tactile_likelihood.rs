@@ -1,9 +1,9 @@
 //! Likelihood of the tactile readings given a particle: [`TactileLikelihood`].
 
-use stickslip_dynamics::{Lanes, Mask};
+use stickslip_dynamics::Lanes;
 use stickslip_filter::Block;
 
-use crate::particle::chunk::{Column, LANES, flag};
+use crate::particle::chunk::{Column, flag};
 use crate::particle::columns::Columns;
 use crate::setup::Tactile;
 
@@ -28,12 +28,6 @@ impl TactileLikelihood {
     }
 
     /// Returns the log-probability of the readings given one chunk's contacts.
-    ///
-    /// The impulses of a driven particle show which fixels it touches. Those of an idle particle do
-    /// not: the support's friction holds it, so it stays where it is whether the pusher behind it
-    /// presses or not. Both are certified solutions of its step. The warm start and the tracking
-    /// noise decide which of them the solver returns. So the one that explains the readings better
-    /// counts.
     #[inline(always)]
     pub fn log_likelihood(
         &self,
@@ -41,38 +35,13 @@ impl TactileLikelihood {
         block: &Block<'_>,
         chunk: usize,
     ) -> Column {
-        let driven = self.given(
-            readings,
-            #[inline(always)]
-            |j| flag(block, self.columns.contact_fixel(j), chunk),
-        );
-        let idle = flag(block, Columns::IDLE, chunk);
-        if !idle.any() {
-            return driven;
-        }
-        let pressed = self.given(
-            readings,
-            #[inline(always)]
-            |j| flag(block, self.columns.driven_contact_fixel(j), chunk),
-        );
-        let untouched = self.given(
-            readings,
-            #[inline(always)]
-            |_| Mask::splat(false),
-        );
-        idle.select(pressed.max(untouched), driven)
-    }
-
-    /// Returns the log-probability of the readings if `touches(j)` are the particles that touch
-    /// fixel j.
-    #[inline(always)]
-    fn given(&self, readings: &[Option<bool>], touches: impl Fn(usize) -> Mask<LANES>) -> Column {
         let mut sum = Column::ZERO;
         for (j, reading) in readings.iter().enumerate() {
             if let Some(reading) = reading {
                 let reading = usize::from(*reading);
                 let (free, touching) = (self.free[reading], self.touching[reading]);
-                sum += touches(j).select(Lanes::splat(touching), Lanes::splat(free));
+                let touches = flag(block, self.columns.contact_fixel(j), chunk);
+                sum += touches.select(Lanes::splat(touching), Lanes::splat(free));
             }
         }
         sum

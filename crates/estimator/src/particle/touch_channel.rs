@@ -1,6 +1,6 @@
 //! Model of a binary tactile sensor over time (robust model): [`TouchChannel`].
 
-use stickslip_dynamics::{Lanes, Mask};
+use stickslip_dynamics::Lanes;
 
 use crate::setup::Tactile;
 
@@ -210,24 +210,6 @@ pub(crate) fn felt<const W: usize>(impulse: Lanes<W>, gap: Lanes<W>) -> Lanes<W>
     impulse.gt(Lanes::ZERO).select(pressed, near)
 }
 
-/// Returns that probability for a contact that may be idle: no step tells whether one that is near
-/// presses (docs/model.md (38)).
-#[inline(always)]
-pub(crate) fn felt_or_idle<const W: usize>(
-    impulse: Lanes<W>,
-    gap: Lanes<W>,
-    idle: Mask<W>,
-) -> Lanes<W> {
-    let may_press = idle & gap.lt(Lanes::splat(NEAR));
-    may_press.select(Lanes::splat(PRESSES), felt(impulse, gap))
-}
-
-/// Gap, in units of its uncertainty, within which an idle contact may press or not.
-const NEAR: f64 = 2.0;
-
-/// Probability that an idle contact which is near presses.
-const PRESSES: f64 = 0.5;
-
 /// Number of parts from 0 to 1, and the size of each.
 const QUARTERS: usize = 4;
 const QUARTER: f64 = 1.0 / QUARTERS as f64;
@@ -298,27 +280,6 @@ mod tests {
         assert!((-6.0..-2.0).contains(&few), "{few}");
         assert!(many > few - 10.0, "{many}");
         assert!(evidence(100, touched, true) > -8.0);
-    }
-
-    #[test]
-    fn an_idle_contact_explains_readings_of_either_kind_and_no_mixture() {
-        let against = |readings: Vec<bool>| {
-            let idle = evidence_of(readings.iter().copied(), PRESSES);
-            idle - evidence_of(readings.into_iter(), 0.0)
-        };
-        // zeros are little evidence against an idle contact; ones are evidence for it that a sensor
-        // stuck at 1 is not
-        let zeros = against(vec![false; 300]);
-        assert!((-4.0..0.0).contains(&zeros), "{zeros}");
-        let ones = against(vec![true; 10]);
-        assert!(ones > 1.5, "{ones}");
-
-        // false alarms among zeros are no evidence for it, however many they are
-        let alarms = |every: usize| (0..300).map(|row| row % every == every - 1).collect();
-        for every in [30, 60, 100] {
-            let told = against(alarms(every));
-            assert!((-12.0..1.0).contains(&told), "{told}, every {every} rows");
-        }
     }
 
     #[test]

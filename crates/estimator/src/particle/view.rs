@@ -83,15 +83,14 @@ impl<'a> ParticleView<'a> {
         shown.map(|column| column.0[i % LANES])
     }
 
-    /// Returns true if nothing drives the object according to one particle: the pusher rests, or
-    /// neither moves the object nor presses on it.
+    /// Returns true if the object touches fixel `fixel` according to one particle.
     ///
     /// # Panics
     /// If there is no such particle.
-    #[must_use]
-    pub fn is_idle(&self, particle: usize) -> bool {
+    pub(crate) fn touches_fixel(&self, particle: usize, fixel: usize) -> bool {
         let block = self.particles.block(particle / BLOCK);
-        is_set(&block, Columns::IDLE, particle % BLOCK)
+        let flag = self.model.columns().contact_fixel(fixel);
+        is_set(&block, flag, particle % BLOCK)
     }
 
     fn values<const K: usize>(&self, particle: usize, first: usize) -> [f64; K] {
