@@ -12,8 +12,7 @@ use crate::particle::unknown::Name;
 
 impl Propagation {
     /// Returns the factor of each particle's random force. While the camera is off it is b^½: a rig
-    /// that is measured well is also smooth. At rest with the camera off it is 0: nothing would
-    /// tell the particles apart, and their spread would only grow.
+    /// that is measured well is also smooth.
     #[inline(always)]
     pub(super) fn force_factor(
         Transition { setup, columns, .. }: &Transition<'_>,
@@ -21,9 +20,6 @@ impl Propagation {
         block: &BlockMut<'_>,
         chunk: usize,
     ) -> Column {
-        if plan.rests_unseen() {
-            return Lanes::ZERO;
-        }
         if !plan.is_dark() {
             return Lanes::splat(1.0);
         }
