@@ -7,7 +7,7 @@ use crate::error::RunError;
 use crate::estimate::{Estimate, EstimateRow};
 use crate::log::Log;
 use crate::options::RunOptions;
-use crate::particle::observer::Observer;
+use crate::particle::set::observer::Observer;
 use crate::pusher::schedule::Schedule;
 use crate::pusher::track::PusherTrack;
 use crate::setup::Setup;

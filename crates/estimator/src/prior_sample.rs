@@ -10,10 +10,10 @@ use crate::filter_model::FilterModel;
 use crate::log::Log;
 use crate::occlusion::Occlusion;
 use crate::options::{RunOptions, TactileUse};
-use crate::particle::camera_noise::NoisePrior;
-use crate::particle::observer::{Observer, SolvedStep};
-use crate::particle::touch_channel::{DrawnSensor, TouchChannel, felt};
-use crate::particle::view::ParticleView;
+use crate::particle::sensor::camera_noise::NoisePrior;
+use crate::particle::sensor::touch_channel::{DrawnSensor, TouchChannel, felt};
+use crate::particle::set::observer::{Observer, SolvedStep};
+use crate::particle::set::view::ParticleView;
 use crate::run::run_observed;
 use crate::setup::{Camera, Setup};
 

@@ -13,7 +13,7 @@ use crate::baseline::linearised_step::LinearisedStep;
 use crate::baseline::nominal::touch;
 use crate::baseline::pose_update::PoseUpdate;
 use crate::estimate::{Estimate, EstimateRow};
-use crate::particle::noise_clock::NOISE_STEP;
+use crate::particle::transition::noise_clock::NOISE_STEP;
 use crate::prepared_log::PreparedLog;
 use crate::setup::{Camera, Setup};
 

@@ -7,9 +7,9 @@ use stickslip_dynamics::{
 use stickslip_filter::Gaussian;
 
 use crate::baseline::belief::{Belief, FRICTION, STATES, State, StateMatrix};
-use crate::particle::noise_clock::{NOISE_STEP, ROUNDED, sharing};
-use crate::particle::observer::{Observer, SolvedStep};
-use crate::particle::propagation::MOVING;
+use crate::particle::set::observer::{Observer, SolvedStep};
+use crate::particle::transition::noise_clock::{NOISE_STEP, ROUNDED, sharing};
+use crate::particle::transition::propagation::MOVING;
 use crate::setup::Setup;
 
 /// Number of states side by side.

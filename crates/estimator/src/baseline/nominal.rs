@@ -4,7 +4,7 @@
 use stickslip_dynamics::{Body, Dynamics, Outcome, Particle, Pose, StepInput, StepWork};
 
 use crate::estimate::{Estimate, EstimateRow};
-use crate::particle::observer::SolvedStep;
+use crate::particle::set::observer::SolvedStep;
 use crate::prepared_log::PreparedLog;
 use crate::setup::Setup;
 

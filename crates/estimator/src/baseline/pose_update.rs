@@ -6,7 +6,7 @@ use stickslip_dynamics::Pose;
 use crate::angle::unwrapped;
 use crate::baseline::belief::{Belief, STATES, TWIST};
 use crate::covariance::PoseCovariance;
-use crate::particle::camera_trust::BELIEVED_AFTER;
+use crate::particle::sensor::camera_trust::BELIEVED_AFTER;
 use crate::setup::Camera;
 
 /// Squared Mahalanobis distance of the innovation that one right pose in 10,000 exceeds: χ² of

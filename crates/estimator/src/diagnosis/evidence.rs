@@ -8,7 +8,7 @@ use super::two_places::TwoPlaces;
 use crate::angle::nearest_winding;
 use crate::gap::gap;
 use crate::log::Log;
-use crate::particle::pose_clock::TELLING;
+use crate::particle::sensor::pose_clock::TELLING;
 use crate::pusher::tracked_pose::bridged;
 use crate::setup::Setup;
 

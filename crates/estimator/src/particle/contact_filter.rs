@@ -3,28 +3,28 @@
 
 use std::num::NonZero;
 
-use stickslip_dynamics::{Pose, StepInput};
-use stickslip_filter::{ParticleFilter, StepReport, WeightUpdate};
+use stickslip_dynamics::Pose;
+use stickslip_filter::{ParticleFilter, Resampling, Settings, StepReport, WeightUpdate};
 
 use crate::covariance::PoseCovariance;
 use crate::error::RunError;
 use crate::estimate::EstimateRow;
 use crate::filter_model::FilterModel;
-use crate::particle::camera_trust::CameraTrust;
-use crate::particle::contact_flags::TOUCHING;
-use crate::particle::filter_options::FilterOptions;
-use crate::particle::hidden_pusher::HiddenPusher;
-use crate::particle::history::PoseHistory;
-use crate::particle::mode_finder::ModeFinder;
+use crate::particle::estimate::mode_finder::ModeFinder;
+use crate::particle::estimate::summary::summarise;
+use crate::particle::estimate::sums::Reference;
 use crate::particle::model::ContactModel;
-use crate::particle::noise_clock::NoiseClock;
-use crate::particle::observation::{Observation, PoseAt};
-use crate::particle::pose_clock::PoseClock;
-use crate::particle::pusher_likelihood::{Push, speed};
-use crate::particle::step_plan::{ParameterNoise, StepPlan};
-use crate::particle::summary::summarise;
-use crate::particle::sums::Reference;
-use crate::particle::view::ParticleView;
+use crate::particle::sensor::camera_trust::CameraTrust;
+use crate::particle::sensor::observation::{Observation, PoseAt};
+use crate::particle::sensor::pose_clock::PoseClock;
+use crate::particle::sensor::pusher_likelihood::{Push, speed};
+use crate::particle::set::history::PoseHistory;
+use crate::particle::set::observer::Observer;
+use crate::particle::set::view::ParticleView;
+use crate::particle::transition::contact_flags::TOUCHING;
+use crate::particle::transition::noise_clock::NoiseClock;
+use crate::particle::transition::step_plan::{Drive, ParameterNoise, StepPlan};
+use crate::particle::transition::unseen_pusher::HiddenPusher;
 use crate::setup::{Camera, Setup};
 
 /// Least share of a camera pose that moves particles; the rest weighs them (docs/model.md (45)).
@@ -43,27 +43,31 @@ pub(crate) struct Measured<'a> {
     pub tactile: &'a [Option<bool>],
 }
 
-/// Drive of the step to a row by the pusher.
+/// Options of a contact filter.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Drive<'a> {
-    /// Substeps; their lengths sum to the step's.
-    pub substeps: &'a [StepInput],
-    /// True if the pusher moves.
-    pub moves: bool,
-    /// True if the pusher is not seen.
-    pub unseen: bool,
-    /// True if `moves` knows the rows that follow, so that a stop shows when it begins.
-    pub smoothed: bool,
+pub(crate) struct FilterOptions<'o> {
+    /// Configuration of the filter.
+    pub model: FilterModel,
+    /// Number of particles.
+    pub particles: usize,
+    /// Seed of all random numbers.
+    pub seed: u64,
+    /// Longest time before the latest row at which late poses may show the object (s).
+    pub late: f64,
+    /// True if camera poses may move particles (robust model).
+    pub camera_moves: bool,
+    /// Observer of every time step.
+    pub observer: Option<&'o dyn Observer>,
 }
 
-impl<'a> Drive<'a> {
-    /// The drive of these substeps; the pusher is seen if the last substep has it.
-    pub fn new(substeps: &'a [StepInput], moves: bool) -> Self {
-        Self {
-            substeps,
-            moves,
-            unseen: substeps.last().is_some_and(|step| step.pusher.is_none()),
-            smoothed: false,
+impl FilterOptions<'_> {
+    /// Settings of the particle filter.
+    pub fn settings(&self, setup: &Setup) -> Settings {
+        Settings {
+            particles: self.particles,
+            seed: self.seed,
+            resample_below: setup.filter.resample_below,
+            resampling: Resampling::Systematic,
         }
     }
 }

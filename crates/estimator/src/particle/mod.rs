@@ -1,33 +1,11 @@
-//! The particle filter over contact dynamics: the model, its columns, and its estimate.
+//! The particle filter over contact dynamics (docs/method.md; docs/model.md). `contact_filter`
+//! takes one row: it plans the step, has the particles make it, and weighs them. `model` gives the
+//! filter these stages.
 
-mod camera_likelihood;
-pub(crate) mod camera_noise;
-pub(crate) mod camera_trust;
-mod chunk;
-mod columns;
 pub(crate) mod contact_filter;
-mod contact_flags;
-mod contact_mode;
-pub(crate) mod filter_options;
-mod geometric_median;
-mod group;
-mod hidden_pusher;
-mod history;
-mod mode_finder;
+mod estimate;
 mod model;
-mod moved;
-pub(crate) mod noise_clock;
-pub(crate) mod observation;
-pub(crate) mod observer;
-pub(crate) mod pose_clock;
-pub(crate) mod propagation;
-mod pusher_likelihood;
-mod rig;
-mod step_plan;
-mod summary;
-mod sums;
-mod tactile_likelihood;
-pub(crate) mod touch_channel;
+pub(crate) mod sensor;
+pub(crate) mod set;
+pub(crate) mod transition;
 mod unknown;
-mod unseen_pusher;
-pub(crate) mod view;

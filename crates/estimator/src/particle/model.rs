@@ -6,18 +6,18 @@ use stickslip_filter::{BLOCK, Block, BlockMut, Draw, EnsembleShape, Model};
 
 use crate::covariance::PoseCovariance;
 use crate::filter_model::FilterModel;
-use crate::particle::camera_likelihood::CameraLikelihood;
-use crate::particle::chunk::{Column, LANES, is_set, load_chunk, store_chunk};
-use crate::particle::columns::Columns;
-use crate::particle::moved;
-use crate::particle::observation::{Observation, PoseAt};
-use crate::particle::observer::Observer;
-use crate::particle::propagation::{Propagation, Transition};
-use crate::particle::step_plan::StepPlan;
-use crate::particle::sums::Sums;
-use crate::particle::tactile_likelihood::TactileLikelihood;
-use crate::particle::touch_channel::TouchChannel;
-use crate::particle::unknown;
+use crate::particle::estimate::sums::Sums;
+use crate::particle::sensor::camera_likelihood::CameraLikelihood;
+use crate::particle::sensor::observation::{Observation, PoseAt};
+use crate::particle::sensor::tactile_likelihood::TactileLikelihood;
+use crate::particle::sensor::touch_channel::TouchChannel;
+use crate::particle::set::chunk::{Column, LANES, is_set, load_chunk, store_chunk};
+use crate::particle::set::columns::Columns;
+use crate::particle::set::observer::Observer;
+use crate::particle::transition::propagation::{Propagation, Transition};
+use crate::particle::transition::step_plan::StepPlan;
+use crate::particle::unknown::moved;
+use crate::particle::unknown::table;
 use crate::setup::{Camera, Setup};
 
 /// Best log-likelihood below which no particle explains the observation. The particles are then
@@ -156,7 +156,7 @@ impl<'o> ContactModel<'o> {
         let Transition { setup, columns, .. } = &self.transition;
         let friction = setup.drawn_friction(draw.normals::<4>(particle, 4));
         write(block, Columns::FRICTION, i, friction.fields());
-        unknown::draw(*columns, (draw, particle), block, i);
+        table::draw(*columns, (draw, particle), block, i);
         for k in 0..3 {
             block.column_mut(columns.camera_noise() + k)[i] = 0.0;
         }

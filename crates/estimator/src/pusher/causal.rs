@@ -10,7 +10,7 @@ use stickslip_dynamics::Pose;
 use stickslip_filter::{AxisEstimate, ConstantVelocity, ImmState, InteractingMultipleModel};
 
 use crate::error::RunError;
-use crate::particle::pose_clock::PoseClock;
+use crate::particle::sensor::pose_clock::PoseClock;
 use crate::pusher::jumps::JumpGate;
 use crate::pusher::tracked_pose::{INITIAL_VELOCITY_STD, TrackedPose, bridged};
 use crate::setup::Camera;

@@ -8,7 +8,7 @@ use stickslip_filter::{AxisEstimate, ConstantVelocity};
 
 use crate::error::RunError;
 use crate::log::Log;
-use crate::particle::pose_clock::TELLING;
+use crate::particle::sensor::pose_clock::TELLING;
 use crate::pusher::jumps::believed;
 use crate::pusher::tracked_pose::{INITIAL_VELOCITY_STD, TrackedPose, bridged};
 use crate::quantile::quantile;

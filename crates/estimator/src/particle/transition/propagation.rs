@@ -8,16 +8,16 @@ use stickslip_dynamics::{
 use stickslip_filter::{BLOCK, BlockMut, Draw};
 
 use crate::filter_model::FilterModel;
-use crate::particle::chunk::{Column, FlagsMut, LANES, load_chunk, store_chunk};
-use crate::particle::columns::Columns;
-use crate::particle::contact_mode::note_felt;
-use crate::particle::noise_clock::{NOISE_STEP, sharing};
-use crate::particle::observer::{Observer, SolvedStep};
-use crate::particle::step_plan::{ParameterNoise, StepPlan};
+use crate::particle::set::chunk::{Column, FlagsMut, LANES, load_chunk, store_chunk};
+use crate::particle::set::columns::Columns;
+use crate::particle::set::observer::{Observer, SolvedStep};
+use crate::particle::transition::noise_clock::{NOISE_STEP, sharing};
+use crate::particle::transition::step_plan::{ParameterNoise, StepPlan};
+use crate::particle::unknown::friction::note_felt;
 use crate::setup::{Limits, Setup};
 
 /// Chunks of particles in a block.
-pub(super) const CHUNKS: usize = BLOCK / LANES;
+pub(crate) const CHUNKS: usize = BLOCK / LANES;
 
 /// Speed above which an object counts as moving, mass-normalised (m/s) (Φ, docs/method.md (21);
 /// paper Table I).
@@ -43,26 +43,26 @@ pub(crate) struct Transition<'o> {
 /// Working memory for the particles of one block.
 #[derive(Debug)]
 pub struct Propagation {
-    pub(super) work: StepWork<LANES>,
-    pub(super) particles: [Particles<LANES>; CHUNKS],
+    pub(crate) work: StepWork<LANES>,
+    pub(crate) particles: [Particles<LANES>; CHUNKS],
     /// Friction drawn for the step.
-    pub(super) proposed: [Friction<Column>; CHUNKS],
+    pub(crate) proposed: [Friction<Column>; CHUNKS],
     /// Offsets of each particle's pusher and fixels from their poses (robust model).
-    pub(super) pusher_offsets: Vec<[Column; 2]>,
+    pub(crate) pusher_offsets: Vec<[Column; 2]>,
     /// Turn of the pusher; empty if it is known (robust model).
-    pub(super) pusher_turn: Vec<Column>,
-    pub(super) fixel_offsets: Vec<[Column; 2]>,
+    pub(crate) pusher_turn: Vec<Column>,
+    pub(crate) fixel_offsets: Vec<[Column; 2]>,
     /// Offsets of each particle's feet from the scene's; empty if they are known (robust model).
-    pub(super) foot_offsets: Vec<Pose<Column>>,
+    pub(crate) foot_offsets: Vec<Pose<Column>>,
     /// Square of the pusher's lag before the step (m²) (robust model).
-    pub(super) lag_before: [Column; CHUNKS],
+    pub(crate) lag_before: [Column; CHUNKS],
     /// Velocities at which an unseen pusher carries objects along (robust model).
-    pub(super) carried: [Twist<Column>; CHUNKS],
+    pub(crate) carried: [Twist<Column>; CHUNKS],
     /// Particles that nothing has come near yet: no force disturbs them (robust model).
-    pub(super) untouched: [Mask<LANES>; CHUNKS],
+    pub(crate) untouched: [Mask<LANES>; CHUNKS],
     involved: [Involved; CHUNKS],
-    pub(super) normals: [[f64; BLOCK]; 4],
-    pub(super) level: Level,
+    pub(crate) normals: [[f64; BLOCK]; 4],
+    pub(crate) level: Level,
 }
 
 /// Parts of a step that were involved (Φ) and its outcome, by lane of a chunk.
@@ -243,7 +243,7 @@ impl Propagation {
 
     /// Fills the columns of normals with the pairs `pair` and `pair + 1`.
     #[inline(always)]
-    pub(super) fn draw_normals(&mut self, draw: Draw, pair: u32, block: &BlockMut<'_>) {
+    pub(crate) fn draw_normals(&mut self, draw: Draw, pair: u32, block: &BlockMut<'_>) {
         let (len, first) = (block.len(), block.first_particle());
         self.draw_first_normals(draw, pair, block);
         let [_, _, c, d] = &mut self.normals;
@@ -252,7 +252,7 @@ impl Propagation {
 
     /// Fills the first two columns of normals with the pair `pair`.
     #[inline(always)]
-    pub(super) fn draw_first_normals(&mut self, draw: Draw, pair: u32, block: &BlockMut<'_>) {
+    pub(crate) fn draw_first_normals(&mut self, draw: Draw, pair: u32, block: &BlockMut<'_>) {
         let (len, first) = (block.len(), block.first_particle());
         let [a, b, ..] = &mut self.normals;
         draw.normal_columns(first, pair, &mut a[..len], &mut b[..len]);
@@ -402,7 +402,7 @@ impl Propagation {
 
 /// Returns the lanes in which ‖v‖, mass-normalised, is above [`MOVING`].
 #[inline(always)]
-pub(super) fn moving(Twist { vx, vy, omega }: &Twist<Column>, rho: f64) -> Mask<LANES> {
+pub(crate) fn moving(Twist { vx, vy, omega }: &Twist<Column>, rho: f64) -> Mask<LANES> {
     let turn = *omega * rho;
     (*vx * *vx + *vy * *vy + turn * turn).gt(Lanes::splat(MOVING * MOVING))
 }
@@ -417,7 +417,7 @@ fn disturbed(value: Column, w: Column, limits: &Limits) -> Column {
 
 /// Reads one chunk of neighbouring columns; lanes past the last particle repeat it.
 #[inline(always)]
-pub(super) fn load_columns<const N: usize>(
+pub(crate) fn load_columns<const N: usize>(
     block: &BlockMut<'_>,
     first_column: usize,
     chunk: usize,
@@ -431,7 +431,7 @@ pub(super) fn load_columns<const N: usize>(
 
 /// Writes one chunk of neighbouring columns.
 #[inline(always)]
-pub(super) fn store_columns<const N: usize>(
+pub(crate) fn store_columns<const N: usize>(
     block: &mut BlockMut<'_>,
     first_column: usize,
     chunk: usize,

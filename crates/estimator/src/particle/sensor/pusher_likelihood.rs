@@ -4,11 +4,10 @@
 use stickslip_dynamics::{Lanes, PusherMotion, StepInput, Twist};
 use stickslip_filter::BlockMut;
 
-use crate::particle::chunk::{Column, LANES, load_chunk, store_chunk};
-use crate::particle::contact_filter::Drive;
-use crate::particle::propagation::{CHUNKS, Propagation, Transition};
-use crate::particle::rig::roughness;
-use crate::particle::step_plan::StepPlan;
+use crate::particle::set::chunk::{Column, LANES, load_chunk, squared, store_chunk};
+use crate::particle::transition::propagation::{CHUNKS, Propagation, Transition};
+use crate::particle::transition::step_plan::{Drive, StepPlan};
+use crate::particle::unknown::units::roughness;
 
 /// Probability that a pusher which stops was commanded to stop just there, over that of a stop by a
 /// jam.
@@ -45,7 +44,7 @@ impl Propagation {
     /// Weighs how far the pusher yielded behind its logged pose in this step, and whether it would
     /// yield if it went on where it stops. A pusher that has just come back into view does not
     /// count: where the object went meanwhile is unknown.
-    pub(super) fn read_pusher(
+    pub(crate) fn read_pusher(
         &mut self,
         transition: &Transition<'_>,
         plan: &StepPlan,
@@ -103,11 +102,6 @@ impl Propagation {
 }
 
 /// Speed of a pusher (m/s).
-pub(super) fn speed(twist: &Twist) -> f64 {
+pub(crate) fn speed(twist: &Twist) -> f64 {
     libm::hypot(twist.vx, twist.vy)
-}
-
-/// Square of a lag (m²).
-pub(super) fn squared([x, y]: [Column; 2]) -> Column {
-    x * x + y * y
 }

@@ -6,8 +6,8 @@ use stickslip_filter::{Block, WeightedSums};
 use crate::angle::nearest_zero;
 use crate::contact_slip::ContactSlip;
 use crate::estimate::EstimateRow;
-use crate::particle::chunk::{Column, LANES, flag, load_chunk, total};
-use crate::particle::columns::{Columns, Flag, SlipFlags};
+use crate::particle::set::chunk::{Column, LANES, flag, load_chunk, total};
+use crate::particle::set::columns::{Columns, Flag, SlipFlags};
 
 /// Column of θ.
 pub(crate) const ANGLE: usize = Columns::POSE + 2;

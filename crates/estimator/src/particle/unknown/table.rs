@@ -2,13 +2,13 @@
 //! "Unknowns"). Three loops go over it: the first draw, the step of each row, and the ensemble
 //! update, in [`moved`](super::moved). The units of their numbers are in [`rig`](super::rig).
 
-use stickslip_dynamics::on_widest;
+use stickslip_dynamics::{Twist, on_widest};
 use stickslip_filter::{BlockMut, Draw};
 
-use crate::particle::chunk::{LANES, flag, load_chunk, store_chunk};
-use crate::particle::columns::{Columns, Flag};
-use crate::particle::propagation::{Propagation, Transition};
-use crate::particle::step_plan::StepPlan;
+use crate::particle::set::chunk::{LANES, flag, load_chunk, squared, store_chunk};
+use crate::particle::set::columns::{Columns, Flag};
+use crate::particle::transition::propagation::{Propagation, Transition};
+use crate::particle::transition::step_plan::{StepPlan, UNSEEN_PAIR};
 use crate::setup::Setup;
 use crate::uncertainty::JITTER;
 
@@ -110,6 +110,9 @@ pub(crate) fn numbers(columns: Columns) -> impl Iterator<Item = Number> {
 /// Index of μ_s, the friction that takes part where the object moves.
 const MU_S: usize = 0;
 
+/// Pair of normal numbers of the objects that nothing has come near yet.
+const UNTOUCHED_PAIR: u32 = UNSEEN_PAIR + 2;
+
 /// Number of the first pair of normal numbers of a step: behind those of all substeps.
 const FIRST_PAIR: u32 = 1 << 21;
 
@@ -117,7 +120,7 @@ const FIRST_PAIR: u32 = 1 << 21;
 const FIRST_NUMBER: u32 = 1 << 21;
 
 /// Draws the unknowns of one particle from their priors.
-pub(super) fn draw(
+pub(crate) fn draw(
     columns: Columns,
     (draw, particle): (Draw, u32),
     block: &mut BlockMut<'_>,
@@ -140,10 +143,69 @@ impl Unknown {
 }
 
 impl Propagation {
+    /// Draws the unknowns for one step.
+    pub(crate) fn draw_unknowns(
+        &mut self,
+        transition: &Transition<'_>,
+        plan: &StepPlan,
+        draw: Draw,
+        block: &mut BlockMut<'_>,
+    ) {
+        on_widest(
+            self.level,
+            #[inline(always)]
+            || self.note_untouched(transition, block),
+        );
+        self.carried.fill(Twist::default());
+        if let Some(pusher) = plan.unseen_pusher {
+            self.normals_of(draw, UNSEEN_PAIR, block);
+            self.carry(transition, plan, (pusher, draw), block);
+        }
+        if !plan.is_dark() && self.untouched.iter().any(|lanes| lanes.any()) {
+            self.normals_of(draw, UNTOUCHED_PAIR, block);
+            on_widest(
+                self.level,
+                #[inline(always)]
+                || self.nudge(transition, plan, block),
+            );
+        }
+        self.normals_of(draw, 0, block);
+        on_widest(
+            self.level,
+            #[inline(always)]
+            || self.draw_friction(transition, plan, block),
+        );
+        // drawn in every row of a fast pusher, its offset would be the largest of many when it
+        // comes near
+        if plan.noise_age == 0 {
+            self.step_unknowns(transition, plan, draw, block);
+        }
+        on_widest(
+            self.level,
+            #[inline(always)]
+            || {
+                self.load_offsets(transition, block);
+                self.load_support(transition, block);
+            },
+        );
+        for (before, particles) in self.lag_before.iter_mut().zip(&self.particles) {
+            *before = squared(particles.pusher_lag);
+        }
+    }
+
+    /// Fills the columns of normals, on the widest instructions.
+    fn normals_of(&mut self, draw: Draw, pair: u32, block: &BlockMut<'_>) {
+        on_widest(
+            self.level,
+            #[inline(always)]
+            || self.draw_normals(draw, pair, block),
+        );
+    }
+
     /// Takes the step (34) of every unknown. Until something has identified it, it is resampled
     /// from its prior. Afterwards it takes a random step that keeps the prior, while the pusher
     /// moves.
-    pub(super) fn step_unknowns(
+    pub(crate) fn step_unknowns(
         &mut self,
         Transition { setup, columns, .. }: &Transition<'_>,
         plan: &StepPlan,

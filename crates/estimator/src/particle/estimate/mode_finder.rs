@@ -5,9 +5,9 @@ use stickslip_filter::ParticleFilter;
 
 use crate::angle::wrapped;
 use crate::belief_mode::BeliefMode;
-use crate::particle::columns::Columns;
-use crate::particle::group::{Moments, Point, dot, minus, squared};
+use crate::particle::estimate::group::{Moments, Point, dot, minus, squared};
 use crate::particle::model::ContactModel;
+use crate::particle::set::columns::Columns;
 
 /// Largest number of groups.
 const MOST_MODES: u8 = 8;

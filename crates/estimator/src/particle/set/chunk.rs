@@ -3,7 +3,13 @@
 use stickslip_dynamics::{Lanes, Mask, Pose};
 use stickslip_filter::{Block, BlockMut};
 
-use crate::particle::columns::{Columns, Flag};
+use crate::particle::set::columns::{Columns, Flag};
+
+/// Square of the length of a vector.
+#[inline(always)]
+pub(crate) fn squared([x, y]: [Column; 2]) -> Column {
+    x * x + y * y
+}
 
 /// Number of particles of a chunk.
 pub(crate) const LANES: usize = 8;

@@ -1,20 +1,20 @@
 //! Where pusher, fixels and feet of each particle are (robust model): the units of its unknowns,
 //! docs/model.md (35) and (36).
 
-use stickslip_dynamics::{Lanes, Pose};
+use stickslip_dynamics::{Lanes, Offsets, Pose, StepInput};
 use stickslip_filter::BlockMut;
 
-use crate::particle::chunk::{Column, LANES, load_chunk};
-use crate::particle::columns::Columns;
-use crate::particle::propagation::{Propagation, Transition, load_columns};
-use crate::particle::step_plan::StepPlan;
-use crate::particle::unknown::Name;
+use crate::particle::set::chunk::{Column, LANES, load_chunk};
+use crate::particle::set::columns::Columns;
+use crate::particle::transition::propagation::{Propagation, Transition, load_columns};
+use crate::particle::transition::step_plan::StepPlan;
+use crate::particle::unknown::table::Name;
 
 impl Propagation {
     /// Returns the factor of each particle's random force. While the camera is off it is b^½: a rig
     /// that is measured well is also smooth.
     #[inline(always)]
-    pub(super) fn force_factor(
+    pub(crate) fn force_factor(
         Transition { setup, columns, .. }: &Transition<'_>,
         plan: &StepPlan,
         block: &BlockMut<'_>,
@@ -29,7 +29,7 @@ impl Propagation {
 
     /// Loads the offsets of each particle's pusher and fixels from their poses, for all substeps.
     #[inline(always)]
-    pub(super) fn load_offsets(
+    pub(crate) fn load_offsets(
         &mut self,
         Transition { setup, columns, .. }: &Transition<'_>,
         block: &BlockMut<'_>,
@@ -68,9 +68,27 @@ impl Propagation {
         }
     }
 
+    /// Makes one substep of the first `chunks` chunks.
+    pub(crate) fn step_with_offsets(
+        &mut self,
+        transition: &Transition<'_>,
+        input: &StepInput,
+        chunks: usize,
+    ) {
+        let offsets = Offsets {
+            pusher: &self.pusher_offsets,
+            pusher_turn: &self.pusher_turn,
+            fixels: &self.fixel_offsets,
+            foot_offsets: &self.foot_offsets,
+        };
+        let particles = &mut self.particles[..chunks];
+        let dynamics = &transition.dynamics;
+        dynamics.step_block_offset(input, offsets, particles, &mut self.work);
+    }
+
     /// Loads the displacement and the turn of the feet relative to the scene's, for all substeps.
     #[inline(always)]
-    pub(super) fn load_support(
+    pub(crate) fn load_support(
         &mut self,
         Transition { setup, columns, .. }: &Transition<'_>,
         block: &BlockMut<'_>,
@@ -101,7 +119,7 @@ impl Propagation {
 
 /// Returns the numbers of ln of the rig's scale of one chunk.
 #[inline(always)]
-pub(super) fn roughness(columns: &Columns, block: &BlockMut<'_>, chunk: usize) -> Column {
+pub(crate) fn roughness(columns: &Columns, block: &BlockMut<'_>, chunk: usize) -> Column {
     load_chunk(
         block.column(columns.unknown(Name::Roughness, 0)),
         chunk,

@@ -3,7 +3,7 @@
 
 use std::collections::VecDeque;
 
-use crate::particle::observation::LatencyCompensation;
+use crate::particle::sensor::observation::LatencyCompensation;
 
 /// Number of slots by which a history grows.
 const GROWTH: usize = 8;

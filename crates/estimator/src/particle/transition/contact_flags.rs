@@ -3,13 +3,13 @@
 use stickslip_dynamics::{Body, Lanes, Mask};
 
 use crate::filter_model::FilterModel;
-use crate::particle::chunk::{Column, FlagsMut, LANES};
-use crate::particle::columns::{Columns, SlipFlags};
-use crate::particle::propagation::{Propagation, Transition, moving};
-use crate::particle::step_plan::StepPlan;
+use crate::particle::set::chunk::{Column, FlagsMut, LANES};
+use crate::particle::set::columns::{Columns, SlipFlags};
+use crate::particle::transition::propagation::{Propagation, Transition, moving};
+use crate::particle::transition::step_plan::StepPlan;
 
 /// Gap up to which bodies touch (m).
-pub(super) const TOUCHING: f64 = 1e-4;
+pub(crate) const TOUCHING: f64 = 1e-4;
 
 /// Slip velocity (m/s) above which a contact slides.
 const SLIDING: f64 = 1e-4;
@@ -17,7 +17,7 @@ const SLIDING: f64 = 1e-4;
 impl Propagation {
     /// Sets the flags of contact of one chunk (docs/method.md, "Contact flags").
     #[inline(always)]
-    pub(super) fn store_contacts(
+    pub(crate) fn store_contacts(
         &self,
         transition: &Transition<'_>,
         plan: &StepPlan,

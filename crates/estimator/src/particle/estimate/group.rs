@@ -1,13 +1,13 @@
 //! Poses as points, and the moments of a group of them: [`Moments`].
 
 /// x, y and ρθ about some pose (m): distances of poses as lengths.
-pub(super) type Point = [f64; 3];
+pub(crate) type Point = [f64; 3];
 
 /// Power iterations: any axis near the longest one serves.
 const ITERATIONS: usize = 16;
 
 /// Weight, mean and covariance of a group.
-pub(super) struct Moments {
+pub(crate) struct Moments {
     /// Sum of the weights.
     pub weight: f64,
     /// Mean (m).
@@ -62,14 +62,14 @@ impl Moments {
     }
 }
 
-pub(super) fn minus(a: Point, b: Point) -> Point {
+pub(crate) fn minus(a: Point, b: Point) -> Point {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
-pub(super) fn dot(a: Point, b: Point) -> f64 {
+pub(crate) fn dot(a: Point, b: Point) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-pub(super) fn squared(a: Point) -> f64 {
+pub(crate) fn squared(a: Point) -> f64 {
     dot(a, a)
 }

@@ -3,10 +3,10 @@
 use stickslip_dynamics::{Friction, Pose};
 use stickslip_filter::{BLOCK, LogWeights, ParticleSet};
 
-use crate::particle::chunk::{LANES, is_set};
-use crate::particle::columns::Columns;
 use crate::particle::model::ContactModel;
-use crate::particle::observation::Observation;
+use crate::particle::sensor::observation::Observation;
+use crate::particle::set::chunk::{LANES, is_set};
+use crate::particle::set::columns::Columns;
 
 /// Particles with their weights, read-only.
 #[derive(Clone, Copy, Debug)]

@@ -2,9 +2,12 @@
 
 use stickslip_dynamics::{StepInput, Twist};
 
-use crate::particle::contact_flags::TOUCHING;
-use crate::particle::observation::Observation;
-use crate::particle::sums::Reference;
+use crate::particle::estimate::sums::Reference;
+use crate::particle::sensor::observation::Observation;
+use crate::particle::transition::contact_flags::TOUCHING;
+
+/// Pair of normal numbers of objects that an unseen pusher carries: behind those of all substeps.
+pub(crate) const UNSEEN_PAIR: u32 = 1 << 20;
 
 /// Random step of the friction parameters, or none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,6 +27,31 @@ pub struct UnseenPusher {
     pub reached: bool,
     /// True if it does so in this step.
     pub reaches: bool,
+}
+
+/// Drive of the step to a row by the pusher.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Drive<'a> {
+    /// Substeps; their lengths sum to the step's.
+    pub substeps: &'a [StepInput],
+    /// True if the pusher moves.
+    pub moves: bool,
+    /// True if the pusher is not seen.
+    pub unseen: bool,
+    /// True if `moves` knows the rows that follow, so that a stop shows when it begins.
+    pub smoothed: bool,
+}
+
+impl<'a> Drive<'a> {
+    /// The drive of these substeps; the pusher is seen if the last substep has it.
+    pub fn new(substeps: &'a [StepInput], moves: bool) -> Self {
+        Self {
+            substeps,
+            moves,
+            unseen: substeps.last().is_some_and(|step| step.pusher.is_none()),
+            smoothed: false,
+        }
+    }
 }
 
 /// Plan of the step to one row.

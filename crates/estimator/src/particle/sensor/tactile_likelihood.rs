@@ -3,8 +3,8 @@
 use stickslip_dynamics::Lanes;
 use stickslip_filter::Block;
 
-use crate::particle::chunk::{Column, flag};
-use crate::particle::columns::Columns;
+use crate::particle::set::chunk::{Column, flag};
+use crate::particle::set::columns::Columns;
 use crate::setup::Tactile;
 
 /// Probability of binary readings given a particle's contacts.

@@ -4,10 +4,10 @@ use stickslip_dynamics::{Lanes, Level, Pose, on_widest};
 use stickslip_filter::{Block, ParticleFilter};
 
 use crate::angle::nearest_zero;
-use crate::particle::chunk::{Column, LANES, load_chunk, load_pose, total};
-use crate::particle::columns::Columns;
-use crate::particle::group::{Point, squared};
+use crate::particle::estimate::group::{Point, squared};
 use crate::particle::model::ContactModel;
+use crate::particle::set::chunk::{Column, LANES, load_chunk, load_pose, total};
+use crate::particle::set::columns::Columns;
 
 /// Distance below which a particle pulls less (m): one on the median itself would hold it.
 const SOFTENED: f64 = 1e-5;

@@ -1,8 +1,8 @@
 //! Layout of the particle set: [`Columns`].
 
 use crate::filter_model::FilterModel;
-use crate::particle::touch_channel::BELIEF_LEN;
-use crate::particle::unknown::{Name, UNKNOWNS};
+use crate::particle::sensor::touch_channel::BELIEF_LEN;
+use crate::particle::unknown::table::{Name, UNKNOWNS};
 
 /// Columns of a warm start.
 const WARM: usize = stickslip_dynamics::WarmStart::LEN;
@@ -146,7 +146,7 @@ impl Columns {
         self.unknowns()
     }
 
-    /// Three columns of [`CameraNoise`](crate::particle::camera_noise::CameraNoise) (robust model).
+    /// Three columns of [`CameraNoise`](crate::particle::sensor::camera_noise::CameraNoise) (robust model).
     pub fn camera_noise(&self) -> usize {
         self.unknowns() + 1
     }
@@ -158,7 +158,7 @@ impl Columns {
     }
 
     /// First column of an unknown; of one that every fixel has, that of `fixel` (robust model).
-    pub(super) fn unknown(&self, name: Name, fixel: usize) -> usize {
+    pub(crate) fn unknown(&self, name: Name, fixel: usize) -> usize {
         let before = UNKNOWNS.iter().take_while(|unknown| unknown.name != name);
         let before: usize = before.map(|unknown| unknown.numbers).sum();
         self.sensor(self.fixels) + before + OFFSET_LEN * fixel
@@ -188,7 +188,7 @@ impl Columns {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::particle::unknown;
+    use crate::particle::unknown::table;
     use std::collections::HashSet;
 
     const FIXELS: usize = 50;
@@ -223,7 +223,7 @@ mod tests {
             (columns.camera_noise(), 3),
         ];
         numbers.extend((0..FIXELS).map(|j| (columns.sensor(j), BELIEF_LEN)));
-        numbers.extend(unknown::numbers(*columns).map(|number| (number.column, 1)));
+        numbers.extend(table::numbers(*columns).map(|number| (number.column, 1)));
         numbers.extend((0..columns.history()).map(|slot| (columns.past_pose(slot), 3)));
         numbers
     }

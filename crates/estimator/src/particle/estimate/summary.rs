@@ -8,9 +8,9 @@ use stickslip_filter::ParticleFilter;
 
 use crate::estimate::{CrossCovariance, EstimateRow, Spread};
 use crate::filter_model::FilterModel;
-use crate::particle::geometric_median::way_to_median;
+use crate::particle::estimate::geometric_median::way_to_median;
+use crate::particle::estimate::sums::{ANGLE, Reference};
 use crate::particle::model::ContactModel;
-use crate::particle::sums::{ANGLE, Reference};
 
 /// Writes weighted means and standard deviations, from sums about `reference`, to `row`. θ is the
 /// angle nearest to that of the reference. The robust model publishes the pose at the least mean

@@ -5,8 +5,8 @@ use std::fmt::Debug;
 
 use stickslip_dynamics::{Body, Particles, Report, StepInput, StepProblem, StepSolution};
 
-use crate::particle::chunk::LANES;
-use crate::particle::view::ParticleView;
+use crate::particle::set::chunk::LANES;
+use crate::particle::set::view::ParticleView;
 
 /// One particle's time step.
 #[derive(Clone, Copy, Debug)]

@@ -4,8 +4,8 @@
 use stickslip_dynamics::Lanes;
 use stickslip_filter::{Block, BlockMut, Draw};
 
-use crate::particle::chunk::{Column, load_chunk, store_chunk};
-use crate::particle::columns::Columns;
+use crate::particle::set::chunk::{Column, load_chunk, store_chunk};
+use crate::particle::set::columns::Columns;
 
 /// Standard deviations up to which the prior explains the logarithm of the camera's noise.
 const MOST_SPREADS: f64 = 3.0;

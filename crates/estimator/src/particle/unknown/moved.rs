@@ -3,8 +3,8 @@
 
 use stickslip_filter::{BLOCK, Block, BlockMut};
 
-use crate::particle::columns::Columns;
-use crate::particle::unknown;
+use crate::particle::set::columns::Columns;
+use crate::particle::unknown::table;
 
 /// Scale on which a column's numbers are about normal.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,7 +24,7 @@ const MOST: f64 = 10.0;
 fn moved(columns: Columns) -> impl Iterator<Item = (usize, Scale)> {
     let past = (0..columns.history()).map(move |slot| columns.past_pose(slot));
     let poses = std::iter::once(Columns::POSE).chain(past);
-    let unknowns = unknown::numbers(columns).filter(|number| number.of.moved);
+    let unknowns = table::numbers(columns).filter(|number| number.of.moved);
     let linear = poses
         .flat_map(|first| first..first + 3)
         .chain(unknowns.map(|number| number.column));
@@ -34,12 +34,12 @@ fn moved(columns: Columns) -> impl Iterator<Item = (usize, Scale)> {
 }
 
 /// Number of these columns.
-pub(super) fn count(columns: Columns) -> usize {
+pub(crate) fn count(columns: Columns) -> usize {
     moved(columns).count()
 }
 
 /// Reads these columns, [`BLOCK`] numbers of each.
-pub(super) fn read(columns: Columns, block: &Block<'_>, to: &mut [f64]) {
+pub(crate) fn read(columns: Columns, block: &Block<'_>, to: &mut [f64]) {
     for ((column, scale), to) in moved(columns).zip(to.chunks_mut(BLOCK)) {
         for (to, value) in to.iter_mut().zip(block.column(column)) {
             *to = match scale {
@@ -51,7 +51,7 @@ pub(super) fn read(columns: Columns, block: &Block<'_>, to: &mut [f64]) {
 }
 
 /// Writes these columns back.
-pub(super) fn write(columns: Columns, from: &[f64], block: &mut BlockMut<'_>) {
+pub(crate) fn write(columns: Columns, from: &[f64], block: &mut BlockMut<'_>) {
     for ((column, scale), from) in moved(columns).zip(from.chunks(BLOCK)) {
         for (value, from) in block.column_mut(column).iter_mut().zip(from) {
             *value = match scale {

@@ -5,11 +5,11 @@ use stickslip_filter::{Block, BlockMut};
 
 use crate::angle::nearest_zero;
 use crate::filter_model::FilterModel;
-use crate::particle::camera_noise::{CameraNoise, NoisePrior};
-use crate::particle::chunk::{Column, load_chunk, load_pose};
-use crate::particle::columns::Columns;
-use crate::particle::observation::Observation;
-use crate::particle::unknown::Name;
+use crate::particle::sensor::camera_noise::{CameraNoise, NoisePrior};
+use crate::particle::sensor::observation::Observation;
+use crate::particle::set::chunk::{Column, load_chunk, load_pose};
+use crate::particle::set::columns::Columns;
+use crate::particle::unknown::table::Name;
 use crate::setup::{Camera, Setup};
 use crate::uncertainty::Uncertainty;
 

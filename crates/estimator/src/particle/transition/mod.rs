@@ -1,0 +1,8 @@
+//! How a particle moves over one step.
+
+pub(crate) mod contact_flags;
+pub(crate) mod noise_clock;
+pub(crate) mod propagation;
+pub(crate) mod step_plan;
+pub(crate) mod unseen_pusher;
+pub(crate) mod untouched;
