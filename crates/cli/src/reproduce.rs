@@ -2,6 +2,7 @@
 
 mod figures;
 mod page;
+mod pinned;
 mod text;
 
 use std::path::Path;
@@ -57,6 +58,9 @@ struct Equal {
 
 /// Runs the command.
 pub fn reproduce(args: &ReproduceArgs) -> Result<Verdict> {
+    if args.pinned {
+        return pinned::pinned(args);
+    }
     if let Some(folder) = &args.out {
         // before minutes are spent on what is to be in it
         ready_folder(folder)?;

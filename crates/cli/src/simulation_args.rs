@@ -48,6 +48,9 @@ pub struct ReproduceArgs {
     /// Number of seeds of rig, sensors and filter, 1 to 1000 [default: 20]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1000))]
     pub seeds: Option<u64>,
+    /// Run 106 scenes in the paper's regime, and compare touch with no touch [seeds: 10]
+    #[arg(long, conflicts_with_all = ["from_frames", "out"])]
+    pub pinned: bool,
     /// Track rendered camera frames, instead of poses with the paper's noise
     #[arg(long)]
     pub from_frames: bool,

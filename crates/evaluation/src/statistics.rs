@@ -100,6 +100,21 @@ fn error_of_median(sorted: &[f64]) -> f64 {
     (sorted[n - c] - sorted[c - 1]) / (2.0 * NORMAL_95)
 }
 
+/// Returns the p-value of the sign test, two-sided: how likely so many wins and losses or fewer of
+/// the rarer are, if both are equally likely. 1 of no pairs.
+#[must_use]
+pub fn sign_test(wins: u32, losses: u32) -> f64 {
+    let n = wins + losses;
+    // binomial coefficients over 2ⁿ, each from the one before
+    let mut term = 0.5_f64.powi(n as i32);
+    let mut sum = 0.0;
+    for k in 0..=wins.min(losses) {
+        sum += term;
+        term *= f64::from(n - k) / f64::from(k + 1);
+    }
+    (2.0 * sum).min(1.0)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -161,6 +176,19 @@ mod tests {
         );
         a[19] = 1e6;
         assert_eq!(PairedDifference::of(&a, &b), Some(difference));
+    }
+
+    #[test]
+    fn sign_test_of_twenty_against_six() {
+        // the tail of the binomial distribution of 26 with 1/2, by its table
+        assert!(
+            (sign_test(20, 6) - 0.009_355).abs() < 1e-6,
+            "{}",
+            sign_test(20, 6)
+        );
+        assert_eq!(sign_test(6, 20), sign_test(20, 6));
+        assert_eq!([sign_test(0, 0), sign_test(3, 3)], [1.0, 1.0]);
+        assert_eq!(sign_test(5, 0), 0.0625);
     }
 
     #[test]

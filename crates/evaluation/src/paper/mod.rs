@@ -6,6 +6,8 @@
 
 mod comparison;
 mod noise;
+mod pinned_results;
+mod pinned_scene;
 mod published;
 mod replicate;
 mod results;
@@ -14,6 +16,8 @@ mod scenes;
 
 pub use comparison::{CLEAR, Difference, Finding, Measure, PairedComparison};
 pub use noise::{Noise, NoiseLevel};
+pub use pinned_results::{PinnedCell, PinnedResults, PinnedRow, PinnedScores, TouchVerdicts};
+pub use pinned_scene::{PinnedExperiment, PinnedGroup, PinnedScene};
 pub use published::{PUBLISHED, PublishedRow, PublishedTable};
 pub use replicate::{Replicate, RunSettings};
 pub use results::{

@@ -12,7 +12,7 @@ use crate::simulation::{
 use crate::variant::Variant;
 
 /// Frames per second (Hz), as in the paper.
-const RATE: f64 = 30.0;
+pub(super) const RATE: f64 = 30.0;
 
 /// Settings that all runs of an evaluation have in common.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
