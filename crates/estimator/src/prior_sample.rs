@@ -182,7 +182,10 @@ impl Observer for Witness<'_> {
         let mut state = self.state.lock().expect("one thread");
         let contacts = state.contacts.iter().enumerate();
         let touch = contacts.map(|(j, (impulse, gap))| match self.model {
-            FilterModel::Robust => felt(Lanes([*impulse]), Lanes([*gap])).0[0],
+            FilterModel::Robust => {
+                let impulse = if particles.is_driven() { *impulse } else { 0.0 };
+                felt(Lanes([impulse]), Lanes([*gap])).0[0]
+            }
             FilterModel::Paper => f64::from(u8::from(particles.touches_fixel(0, j))),
         });
         let touch = touch.collect();

@@ -368,7 +368,8 @@ impl<'o> ContactFilter<'o> {
     /// The particles after the latest row.
     pub fn particles(&self) -> ParticleView<'_> {
         let weighed = (self.filter.particles(), self.filter.weights());
-        ParticleView::new(weighed, self.filter.model(), &self.observation)
+        let driven = self.plan.driven;
+        ParticleView::new(weighed, self.filter.model(), &self.observation, driven)
     }
 
     /// Number of rows at which no particle explained the camera pose, so that all were

@@ -56,7 +56,11 @@ impl Propagation {
                     store_columns(block, columns.sensor(j), chunk, belief.fields());
                     continue;
                 };
-                let impulse = self.work.normal_impulses(chunk, Body::Fixel(j)) / threshold;
+                // impulses of a standing rig are not unique
+                let impulse = match plan.driven {
+                    true => self.work.normal_impulses(chunk, Body::Fixel(j)) / threshold,
+                    false => Lanes::ZERO,
+                };
                 let gap = self.work.gaps(chunk, Body::Fixel(j)) / touch_gap;
                 let (after, log_likelihood) = channel.read(belief, felt(impulse, gap), reading);
                 let log_likelihood = log_likelihood - Lanes::splat(most);

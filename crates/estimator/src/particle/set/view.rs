@@ -15,20 +15,24 @@ pub struct ParticleView<'a> {
     weights: &'a LogWeights,
     model: &'a ContactModel<'a>,
     observation: &'a Observation,
+    driven: bool,
 }
 
 impl<'a> ParticleView<'a> {
-    /// The particles of `model`, which `observation` weighed.
+    /// The particles of `model`, which `observation` weighed. `driven` is true if the pusher moved
+    /// in the step to it.
     pub(crate) fn new(
         (particles, weights): (&'a ParticleSet, &'a LogWeights),
         model: &'a ContactModel<'a>,
         observation: &'a Observation,
+        driven: bool,
     ) -> Self {
         Self {
             particles,
             weights,
             model,
             observation,
+            driven,
         }
     }
 
@@ -81,6 +85,11 @@ impl<'a> ParticleView<'a> {
         let camera = self.model.camera_likelihood();
         let shown = camera.shown(self.observation, &block, i / LANES);
         shown.map(|column| column.0[i % LANES])
+    }
+
+    /// Returns true if the pusher moved in the step to the row.
+    pub(crate) fn is_driven(&self) -> bool {
+        self.driven
     }
 
     /// Returns true if the object touches fixel `fixel` according to one particle.
