@@ -42,14 +42,14 @@ pub struct SimulateArgs {
 /// Arguments of `stickslip reproduce`.
 #[derive(Debug, Args)]
 pub struct ReproduceArgs {
-    /// Folder for reproduce.json, Figures 2 to 7 and report.html
+    /// Folder for the numbers as JSON, the figures and report.html
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Number of seeds of rig, sensors and filter, 1 to 1000 [default: 20]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1000))]
     pub seeds: Option<u64>,
     /// Run 106 scenes in the paper's regime, and compare touch with no touch [seeds: 10]
-    #[arg(long, conflicts_with_all = ["from_frames", "out"])]
+    #[arg(long, conflicts_with = "from_frames")]
     pub pinned: bool,
     /// Track rendered camera frames, instead of poses with the paper's noise
     #[arg(long)]

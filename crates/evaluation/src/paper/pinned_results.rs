@@ -123,7 +123,7 @@ impl PinnedRow {
         let cell = |variant, values: &[f64]| {
             // groups of several experiments have no number of the paper
             let paper_mm = match groups {
-                [one] => published(*one, variant),
+                [one] => one.published(variant),
                 _ => None,
             };
             let below = |paper: f64| values.iter().filter(|value| **value < paper).count();
@@ -163,12 +163,15 @@ impl TouchVerdicts {
     }
 }
 
-/// The paper's number for a variant (mm), with the camera off but in the variant's own name.
-fn published(group: PinnedGroup, variant: Variant) -> Option<f64> {
-    let rows = PUBLISHED.iter().flat_map(|table| table.rows);
-    let own = rows.filter(|row| row.experiment == group.paper());
-    let mut cells = own.flat_map(|row| row.cells);
-    cells.find(|(of, _)| *of == variant).map(|(_, mm)| *mm)
+impl PinnedGroup {
+    /// The paper's number for a variant (mm).
+    #[must_use]
+    pub fn published(self, variant: Variant) -> Option<f64> {
+        let rows = PUBLISHED.iter().flat_map(|table| table.rows);
+        let own = rows.filter(|row| row.experiment == self.paper());
+        let mut cells = own.flat_map(|row| row.cells);
+        cells.find(|(of, _)| *of == variant).map(|(_, mm)| *mm)
+    }
 }
 
 #[cfg(test)]

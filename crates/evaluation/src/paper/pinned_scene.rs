@@ -1,7 +1,8 @@
 //! Scenes in the paper's regime: [`PinnedScene`].
 
 use serde::Deserialize;
-use stickslip_formats::{TruthFacts, read_scene};
+use stickslip::{Occlusion, RunError};
+use stickslip_formats::{Experiment, TruthFacts, read_scene};
 
 use super::replicate::{RATE, RunSettings};
 use super::scenes::PaperExperiment;
@@ -10,8 +11,6 @@ use crate::simulation::{
     PUSHER_MEMORY, Physics, REPEATS, Simulation, SimulationError, SimulationOptions,
 };
 use crate::variant::Variant;
-use stickslip::{Occlusion, RunError};
-use stickslip_formats::Experiment;
 
 /// The file of all scenes.
 const SCENES: &str = include_str!("../../scenes/pinned.toml");
@@ -65,7 +64,7 @@ pub enum PinnedGroup {
 }
 
 #[derive(Deserialize)]
-struct File {
+struct Scenes {
     scene: Vec<PinnedScene>,
 }
 
@@ -85,7 +84,7 @@ impl PinnedScene {
     /// If the embedded file is damaged.
     #[must_use]
     pub fn all() -> Vec<Self> {
-        let file: File = toml::from_str(SCENES).expect("the embedded scenes are TOML");
+        let file: Scenes = toml::from_str(SCENES).expect("the embedded scenes are TOML");
         file.scene
     }
 
@@ -179,7 +178,7 @@ impl PinnedGroup {
         }
     }
 
-    /// Whether the object slides at its fixel, or stops there.
+    /// Returns true if the object slides at its fixel; otherwise it stops there.
     #[must_use]
     pub fn slides(self) -> bool {
         match self {
