@@ -11,7 +11,7 @@ use crate::log::Log;
 use crate::occlusion::Occlusion;
 use crate::options::{RunOptions, TactileUse};
 use crate::particle::sensor::camera_noise::NoisePrior;
-use crate::particle::sensor::touch_channel::{DrawnSensor, TouchChannel, felt};
+use crate::particle::sensor::touch_channel::{DrawnSensor, TouchChannel, touch_probability};
 use crate::particle::set::observer::{Observer, SolvedStep};
 use crate::particle::set::view::ParticleView;
 use crate::run::run_observed;
@@ -134,7 +134,7 @@ struct Witness<'a> {
 #[derive(Debug, Default)]
 struct WitnessState {
     rows: Vec<Witnessed>,
-    /// Impulse and gap of each fixel in the latest step, in the units of [`felt`].
+    /// Impulse and gap of each fixel in the latest step, in the units of [`touch_probability`].
     contacts: Vec<(f64, f64)>,
 }
 
@@ -184,7 +184,7 @@ impl Observer for Witness<'_> {
         let touch = contacts.map(|(j, (impulse, gap))| match self.model {
             FilterModel::Robust => {
                 let impulse = if particles.is_driven() { *impulse } else { 0.0 };
-                felt(Lanes([impulse]), Lanes([*gap])).0[0]
+                touch_probability(Lanes([impulse]), Lanes([*gap])).0[0]
             }
             FilterModel::Paper => f64::from(u8::from(particles.touches_fixel(0, j))),
         });
@@ -252,7 +252,7 @@ impl Readings<'_> {
         let particle = FIRST_SENSOR + j as u32;
         let mut sensor = DrawnSensor {
             state: channel.state_at(streams.uniform(0, particle, 3)),
-            felt_from: streams.uniform(0, particle, 4),
+            threshold: streams.uniform(0, particle, 4),
         };
         let mut before = None;
         for (k, ((reading, row), time)) in rows.enumerate() {

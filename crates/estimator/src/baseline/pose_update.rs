@@ -6,7 +6,7 @@ use stickslip_dynamics::Pose;
 use crate::angle::unwrapped;
 use crate::baseline::belief::{Belief, STATES, TWIST};
 use crate::covariance::PoseCovariance;
-use crate::particle::sensor::camera_trust::BELIEVED_AFTER;
+use crate::particle::sensor::camera_gate::ACCEPTED_AFTER;
 use crate::setup::Camera;
 
 /// Squared Mahalanobis distance of the innovation that one right pose in 10,000 exceeds: χ² of
@@ -80,12 +80,12 @@ impl PoseUpdate {
             return true;
         }
         self.unexpected += 1;
-        let believed = self.unexpected >= BELIEVED_AFTER;
-        if believed {
+        let accepted = self.unexpected >= ACCEPTED_AFTER;
+        if accepted {
             self.unexpected = 0;
             self.restarts += 1;
             belief.begin_anew(&measured, noise);
         }
-        believed
+        accepted
     }
 }

@@ -68,7 +68,7 @@ impl Latency {
     }
 
     /// Returns the delay to use: the measured one if it is clearly better than the stated one.
-    pub fn believed(&self, stated: f64) -> f64 {
+    pub fn accepted(&self, stated: f64) -> f64 {
         if self.is_clear() { self.delay } else { stated }
     }
 }

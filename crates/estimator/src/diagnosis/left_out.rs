@@ -3,12 +3,12 @@
 use super::evidence::Evidence;
 use super::finding::{Finding, Subject};
 use crate::counted::counted;
-use crate::pusher::jumps::believed;
+use crate::pusher::jumps::accepted;
 
 pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
     let log = evidence.log;
-    let believed = believed(log, evidence.setup.camera.as_ref());
-    let is_left_out = |row: &usize| log.pusher[*row].is_some() && believed[*row].is_none();
+    let accepted = accepted(log, evidence.setup.camera.as_ref());
+    let is_left_out = |row: &usize| log.pusher[*row].is_some() && accepted[*row].is_none();
     let left_out: Vec<usize> = (0..log.len()).filter(is_left_out).collect();
     let first = left_out.first();
     let place = first.map_or(String::new(), |row| format!(", first in row {row}"));

@@ -9,7 +9,7 @@ const FEWEST: usize = 10;
 
 pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
     let stated = evidence.latency();
-    let delay = latency::estimate(evidence).map_or(stated, |latency| latency.believed(stated));
+    let delay = latency::estimate(evidence).map_or(stated, |latency| latency.accepted(stated));
     let gaps = gaps(evidence, delay);
     if gaps.len() < FEWEST {
         return vec![Finding::ok(

@@ -14,7 +14,7 @@ use crate::particle::estimate::mode_finder::ModeFinder;
 use crate::particle::estimate::summary::summarise;
 use crate::particle::estimate::sums::Reference;
 use crate::particle::model::ContactModel;
-use crate::particle::sensor::camera_trust::CameraTrust;
+use crate::particle::sensor::camera_gate::CameraGate;
 use crate::particle::sensor::observation::{Observation, PoseAt};
 use crate::particle::sensor::pose_clock::PoseClock;
 use crate::particle::sensor::pusher_likelihood::{Push, speed};
@@ -90,7 +90,7 @@ pub(crate) struct ContactFilter<'o> {
     collapsed: bool,
     /// ln of the likelihood that the particles gave to the rows so far.
     log_evidence: f64,
-    trust: CameraTrust,
+    gate: CameraGate,
     pusher: HiddenPusher,
     push: Push,
     /// The latest camera pose.
@@ -133,7 +133,7 @@ impl<'o> ContactFilter<'o> {
             collapses: 0,
             collapsed: false,
             log_evidence: 0.0,
-            trust: CameraTrust::default(),
+            gate: CameraGate::default(),
             pusher: HiddenPusher::default(),
             push: Push::default(),
             shown: pose,
@@ -163,7 +163,7 @@ impl<'o> ContactFilter<'o> {
         let tactile = measured.tactile.iter().copied();
         self.observation.tactile.extend(tactile);
         let contact = self.model() == FilterModel::Robust;
-        self.observation.felt = contact;
+        self.observation.weighs_step = contact;
         self.observation.moves = self.camera_moves;
 
         self.expect_pose(was_unwatched);
@@ -217,9 +217,8 @@ impl<'o> ContactFilter<'o> {
         if self.observation.pose.is_none() {
             return;
         }
-        if let Some(trusted) = self.trust.expect(was_unwatched) {
-            self.filter
-                .change_model(|model| model.trust_camera(trusted));
+        if let Some(all) = self.gate.expect(was_unwatched) {
+            self.filter.change_model(|model| model.accept_poses(all));
         }
     }
 
@@ -246,7 +245,7 @@ impl<'o> ContactFilter<'o> {
     fn take(&mut self, report: &StepReport) {
         self.collapsed = report.collapsed();
         self.collapses += u32::from(self.collapsed);
-        self.trust.judge(report);
+        self.gate.judge(report);
     }
 
     /// Writes the plan of the step to a row.
@@ -332,7 +331,7 @@ impl<'o> ContactFilter<'o> {
         self.look_back(time);
         self.observation.latency = self.history.at(time - self.latency);
         self.observation.tactile.clear();
-        self.observation.felt = false;
+        self.observation.weighs_step = false;
         self.observation.moves = self.camera_moves;
         self.expect_pose(false);
         let report = self.filter.observe(&self.plan, &self.observation);

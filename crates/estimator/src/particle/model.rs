@@ -105,8 +105,8 @@ impl<'o> ContactModel<'o> {
 
     /// Sets whether poses that no particle explains reinitialise them all, or count as wrong
     /// (robust model).
-    pub fn trust_camera(&mut self, trusted: bool) {
-        self.camera_likelihood.set_trust(trusted);
+    pub fn accept_poses(&mut self, all: bool) {
+        self.camera_likelihood.accept_poses(all);
     }
 
     /// Likelihood of the camera's poses.
@@ -222,18 +222,18 @@ impl Model for ContactModel<'_> {
             #[inline(always)]
             |chunk| {
                 let camera = &self.camera_likelihood;
-                let felt = match self.columns().model() {
+                let of_step = match self.columns().model() {
                     FilterModel::Paper => {
                         let tactile = &self.tactile_likelihood;
                         tactile.log_likelihood(&observation.tactile, block, chunk)
                     }
-                    FilterModel::Robust if !observation.felt => Column::ZERO,
+                    FilterModel::Robust if !observation.weighs_step => Column::ZERO,
                     FilterModel::Robust => {
-                        let column = self.columns().felt_log_likelihood();
+                        let column = self.columns().step_log_likelihood();
                         load_chunk(block.column(column), chunk, 0.0)
                     }
                 };
-                camera.log_likelihood(observation, block, chunk) + felt
+                camera.log_likelihood(observation, block, chunk) + of_step
             },
         );
     }
@@ -294,7 +294,7 @@ impl Model for ContactModel<'_> {
         moved::read(self.columns(), block, quantities);
         for chunk in 0..block.len().div_ceil(LANES) {
             let of_chunk = self.camera_likelihood.errors(observation, block, chunk);
-            let noise = self.camera_likelihood.believed_noise(block, chunk);
+            let noise = self.camera_likelihood.estimated_noise(block, chunk);
             let of_chunk = of_chunk.iter().chain(&noise);
             for (errors, column) in errors.chunks_mut(BLOCK).zip(of_chunk) {
                 errors[chunk * LANES..][..LANES].copy_from_slice(&column.0);
@@ -312,7 +312,7 @@ impl Model for ContactModel<'_> {
     }
 
     fn collapsed(&self, best_log_likelihood: f64) -> bool {
-        self.camera_likelihood.trusts() && best_log_likelihood < COLLAPSED
+        self.camera_likelihood.accepts_all() && best_log_likelihood < COLLAPSED
     }
 
     /// Moves every particle, its past included, so that the pose which the camera sees is drawn

@@ -35,7 +35,7 @@ pub(crate) struct JumpGate {
 
 /// Returns the accepted pusher poses of `log`, row by row, angles unwrapped. Without a `camera`
 /// poses count as exact.
-pub(crate) fn believed(log: &Log, camera: Option<&Camera>) -> Vec<Option<Pose>> {
+pub(crate) fn accepted(log: &Log, camera: Option<&Camera>) -> Vec<Option<Pose>> {
     let mut gate = JumpGate::new(camera);
     let rows = log.time.iter().zip(&log.pusher);
     rows.map(|(time, pose)| gate.pass(*time, *pose)).collect()
@@ -116,7 +116,7 @@ mod tests {
     }
 
     #[test]
-    fn a_pose_or_two_aside_are_left_out_and_a_pusher_that_is_elsewhere_is_believed() {
+    fn a_pose_or_two_aside_are_left_out_and_a_pusher_that_is_elsewhere_is_accepted() {
         let [yes, no] = [true, false];
         assert_eq!(
             passed(&[0.0, 1e-3, 0.022, 3e-3, 4e-3]),

@@ -9,7 +9,7 @@ use stickslip_filter::{AxisEstimate, ConstantVelocity};
 use crate::error::RunError;
 use crate::log::Log;
 use crate::particle::sensor::pose_clock::TELLING;
-use crate::pusher::jumps::believed;
+use crate::pusher::jumps::accepted;
 use crate::pusher::tracked_pose::{INITIAL_VELOCITY_STD, TrackedPose, bridged};
 use crate::quantile::quantile;
 use crate::setup::Camera;
@@ -25,7 +25,7 @@ pub(crate) fn smoothed_track(
     log: &Log,
     camera: Option<&Camera>,
 ) -> Result<Vec<Option<TrackedPose>>, RunError> {
-    let seen = believed(log, camera);
+    let seen = accepted(log, camera);
     let mut rows = vec![None; log.len()];
     for span in spans(&log.time, &seen) {
         let poses = track_span(&log.time[span.clone()], &seen[span.clone()], camera)?;
@@ -124,8 +124,8 @@ fn fitted(time: &[f64], measured: &[Option<f64>], std: f64) -> Result<ConstantVe
             fit.log_likelihood,
         ))
     };
-    let (mut best, told) = fit(std)?;
-    let mut most = told + CLEARLY;
+    let (mut best, stated) = fit(std)?;
+    let mut most = stated + CLEARLY;
     for factor in LARGER {
         let (larger, log_likelihood) = fit(factor * std)?;
         if log_likelihood > most {

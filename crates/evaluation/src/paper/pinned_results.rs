@@ -194,7 +194,7 @@ mod tests {
         let scenes = scenes.map(|(without, with)| scene(PinnedGroup::First, without, with));
         let scenes = scenes
             .into_iter()
-            .chain([scene(PinnedGroup::Third, 1.0, 1.0)]);
+            .chain([scene(PinnedGroup::Third, 1.0, 0.9955)]);
         let results = PinnedResults::new(scenes.collect());
         let titles: Vec<&str> = results.rows.iter().map(|row| row.title.as_str()).collect();
         assert_eq!(titles, ["1", "3", "all slides", "all stops"]);

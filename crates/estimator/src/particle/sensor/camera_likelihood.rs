@@ -53,7 +53,7 @@ impl CameraLikelihood {
             widened: settings.likelihood_scale,
             columns,
             latency: Latency {
-                told: camera.latency,
+                nominal: camera.latency,
                 uncertainty: setup.uncertainty,
             },
             noise: noise.filter(|_| contact),
@@ -61,13 +61,13 @@ impl CameraLikelihood {
         }
     }
 
-    /// Trusts all poses from now on, or allows again that some are wrong (robust model).
-    pub fn set_trust(&mut self, trusted: bool) {
-        self.wrong = (self.columns.model() == FilterModel::Robust && !trusted).then_some(WRONG);
+    /// Accepts all poses from now on, or allows again that some are wrong (robust model).
+    pub fn accept_poses(&mut self, all: bool) {
+        self.wrong = (self.columns.model() == FilterModel::Robust && !all).then_some(WRONG);
     }
 
     /// Returns true if no pose is taken to be wrong, as always in the paper's model.
-    pub fn trusts(&self) -> bool {
+    pub fn accepts_all(&self) -> bool {
         self.wrong.is_none()
     }
 
@@ -113,20 +113,20 @@ impl CameraLikelihood {
             .exp();
         let right = right / (right + Lanes::splat(WRONG));
         let mut noise = CameraNoise::load(self.columns, &block.as_block(), chunk);
-        let told = self.widened * self.widened;
-        noise.learn(right, residual.position * told, residual.angle * told);
+        let widened = self.widened * self.widened;
+        noise.learn(right, residual.position * widened, residual.angle * widened);
         noise.store(self.columns, block, chunk);
     }
 
     /// Returns the noise of [`errors`](Self::errors) that one chunk's particles have estimated:
     /// standard deviations in units of the nominal ones.
     #[inline(always)]
-    pub fn believed_noise(&self, block: &Block<'_>, chunk: usize) -> [Column; 3] {
+    pub fn estimated_noise(&self, block: &Block<'_>, chunk: usize) -> [Column; 3] {
         let Some(prior) = self.noise else {
             return [Column::splat(1.0); 3];
         };
         let noise = CameraNoise::load(self.columns, block, chunk);
-        let [position, angle] = noise.believed(prior);
+        let [position, angle] = noise.estimated(prior);
         [position, position, angle]
     }
 
@@ -266,7 +266,7 @@ impl CameraLikelihood {
 #[derive(Clone, Copy, Debug)]
 struct Latency {
     /// Nominal lag (s).
-    told: f64,
+    nominal: f64,
     /// Uncertainty of the unknown rest.
     uncertainty: Uncertainty,
 }
@@ -276,6 +276,6 @@ impl Latency {
     #[inline(always)]
     fn of(&self, columns: Columns, block: &Block<'_>, chunk: usize) -> Column {
         let rest = load_chunk(block.column(columns.unknown(Name::Latency, 0)), chunk, 0.0);
-        self.uncertainty.latency_at(rest) + Lanes::splat(self.told)
+        self.uncertainty.latency_at(rest) + Lanes::splat(self.nominal)
     }
 }

@@ -135,7 +135,7 @@ impl CameraNoise {
     /// Returns the estimated standard deviations of position and angle, in units of the nominal
     /// ones.
     #[inline(always)]
-    pub fn believed(&self, prior: NoisePrior) -> [Column; 2] {
+    pub fn estimated(&self, prior: NoisePrior) -> [Column; 2] {
         let freedom = Lanes::splat(prior.freedom);
         let position = (freedom + self.position) / (freedom + self.poses * 2.0);
         let angle = (freedom + self.angle) / (freedom + self.poses);
@@ -215,7 +215,7 @@ mod tests {
     }
 
     #[test]
-    fn noise_that_is_told_twice_too_small_is_found() {
+    fn noise_that_is_stated_twice_too_small_is_found() {
         let prior = NoisePrior::new(0.3).expect("unknown");
         let noise = after(&[[8.0, 4.0]; 200]);
         // as likely as under twice the noise, from where the normal density has nothing

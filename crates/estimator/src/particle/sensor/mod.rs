@@ -1,8 +1,8 @@
 //! Sensors: readings, and how likely they are given a particle.
 
+pub(crate) mod camera_gate;
 pub(crate) mod camera_likelihood;
 pub(crate) mod camera_noise;
-pub(crate) mod camera_trust;
 pub(crate) mod observation;
 pub(crate) mod pose_clock;
 pub(crate) mod pusher_likelihood;

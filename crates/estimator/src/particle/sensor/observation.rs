@@ -44,7 +44,7 @@ pub struct Observation {
     /// Tactile readings, one per sensor.
     pub tactile: Vec<Option<bool>>,
     /// True if the step's own likelihood of pusher and sensors counts (robust model).
-    pub felt: bool,
+    pub weighs_step: bool,
     /// True if the camera's pose may move particles (robust model).
     pub moves: bool,
 }
@@ -52,6 +52,6 @@ pub struct Observation {
 impl Observation {
     /// Returns true if nothing was read.
     pub fn is_empty(&self) -> bool {
-        self.pose.is_none() && !self.felt && self.tactile.iter().all(Option::is_none)
+        self.pose.is_none() && !self.weighs_step && self.tactile.iter().all(Option::is_none)
     }
 }

@@ -66,7 +66,7 @@ impl Propagation {
                 let stops = Lanes::splat(1.0) - goes_on * (1.0 - COMMANDED);
                 log_likelihood += (stops * (1.0 / COMMANDED)).ln();
             }
-            let column = columns.felt_log_likelihood();
+            let column = columns.step_log_likelihood();
             let so_far = load_chunk(block.column(column), chunk, 0.0);
             store_chunk(block.column_mut(column), chunk, &(so_far + log_likelihood));
         }

@@ -15,19 +15,19 @@ pub(crate) struct SensorBelief<const W: usize> {
     /// Probabilities of the quarters in which the threshold of a working sensor may lie: it reads a
     /// touch whose probability exceeds the threshold. Within its quarter the threshold counts as
     /// drawn again in every row.
-    felt_from: [Lanes<W>; QUARTERS],
+    threshold: [Lanes<W>; QUARTERS],
 }
 
 impl<const W: usize> SensorBelief<W> {
     /// Its numbers.
     pub fn fields(&self) -> [&Lanes<W>; BELIEF_LEN] {
-        let ([zero, one], [a, b, c, d]) = (&self.stuck, &self.felt_from);
+        let ([zero, one], [a, b, c, d]) = (&self.stuck, &self.threshold);
         [zero, one, a, b, c, d]
     }
 
     /// Its numbers, to be written.
     pub fn fields_mut(&mut self) -> [&mut Lanes<W>; BELIEF_LEN] {
-        let ([zero, one], [a, b, c, d]) = (&mut self.stuck, &mut self.felt_from);
+        let ([zero, one], [a, b, c, d]) = (&mut self.stuck, &mut self.threshold);
         [zero, one, a, b, c, d]
     }
 }
@@ -46,7 +46,7 @@ pub(crate) struct TouchChannel {
     reads_one: [f64; 2],
     /// Share of time for which a sensor is stuck at 0 and at 1.
     share: [f64; 2],
-    /// Rate at which a stuck sensor gets free, and `felt_from` changes (1/s).
+    /// Rate at which a stuck sensor gets free, and `threshold` changes (1/s).
     recovery: f64,
 }
 
@@ -63,7 +63,7 @@ impl TouchChannel {
     pub fn start<const W: usize>(&self) -> SensorBelief<W> {
         SensorBelief {
             stuck: self.share.map(Lanes::splat),
-            felt_from: [Lanes::splat(QUARTER); QUARTERS],
+            threshold: [Lanes::splat(QUARTER); QUARTERS],
         }
     }
 
@@ -78,7 +78,7 @@ impl TouchChannel {
     #[inline(always)]
     pub fn later<const W: usize>(
         &self,
-        SensorBelief { stuck, felt_from }: SensorBelief<W>,
+        SensorBelief { stuck, threshold }: SensorBelief<W>,
         freed: f64,
     ) -> SensorBelief<W> {
         let one = Lanes::splat(1.0);
@@ -91,10 +91,10 @@ impl TouchChannel {
         let known = (one - repaired / works) * (1.0 - freed);
         let quarter = Lanes::splat(QUARTER);
         let known_of = |share| quarter + known * (share - quarter);
-        let [a, b, c, d] = felt_from;
+        let [a, b, c, d] = threshold;
         SensorBelief {
             stuck,
-            felt_from: [known_of(a), known_of(b), known_of(c), known_of(d)],
+            threshold: [known_of(a), known_of(b), known_of(c), known_of(d)],
         }
     }
 
@@ -103,7 +103,7 @@ impl TouchChannel {
     #[inline(always)]
     pub fn read<const W: usize>(
         &self,
-        SensorBelief { stuck, felt_from }: SensorBelief<W>,
+        SensorBelief { stuck, threshold }: SensorBelief<W>,
         touch: Lanes<W>,
         reading: bool,
     ) -> (SensorBelief<W>, Lanes<W>) {
@@ -113,18 +113,18 @@ impl TouchChannel {
             .map(|one| if reading { one } else { 1.0 - one });
         let (of_zero, of_one) = (stuck[0] * of_untouched, stuck[1] * of_touched);
         let works = one - stuck[0] - stuck[1];
-        let mut of_quarters = felt_from;
+        let mut of_quarters = threshold;
         for (k, share) in of_quarters.iter_mut().enumerate() {
-            let felt = touch * QUARTERS as f64 - Lanes::splat(k as f64);
-            let felt = felt.max(Lanes::ZERO).min(one);
-            *share = *share * ((one - felt) * of_untouched + felt * of_touched);
+            let touched = touch * QUARTERS as f64 - Lanes::splat(k as f64);
+            let touched = touched.max(Lanes::ZERO).min(one);
+            *share = *share * ((one - touched) * of_untouched + touched * of_touched);
         }
         let [a, b, c, d] = of_quarters;
         let of_works = a + b + c + d;
         let likelihood = works * of_works + of_zero + of_one;
         let after = SensorBelief {
             stuck: [of_zero / likelihood, of_one / likelihood],
-            felt_from: [a / of_works, b / of_works, c / of_works, d / of_works],
+            threshold: [a / of_works, b / of_works, c / of_works, d / of_works],
         };
         (after, likelihood.ln())
     }
@@ -153,22 +153,22 @@ impl TouchChannel {
             false => before.state,
         };
         let repaired = before.state != SensorState::Works && state == SensorState::Works;
-        let felt_from = match turn < freed {
+        let threshold = match turn < freed {
             true => turn / freed,
             false if repaired => (turn - freed) / (1.0 - freed),
-            false => before.felt_from,
+            false => before.threshold,
         };
         let reading = match state {
-            SensorState::Works => self.drawn_working(touch, [felt_from, read]),
+            SensorState::Works => self.drawn_working(touch, [threshold, read]),
             SensorState::StuckAt(one) => read < self.reads_one[usize::from(one)],
         };
-        (DrawnSensor { state, felt_from }, reading)
+        (DrawnSensor { state, threshold }, reading)
     }
 
     /// Draws a reading of a working sensor with two uniform numbers. The first is the probability
     /// from which on it feels a touch.
-    pub fn drawn_working(&self, touch: f64, [felt_from, read]: [f64; 2]) -> bool {
-        read < self.reads_one[usize::from(felt_from < touch)]
+    pub fn drawn_working(&self, touch: f64, [threshold, read]: [f64; 2]) -> bool {
+        read < self.reads_one[usize::from(threshold < touch)]
     }
 
     /// Returns the state of a sensor of which nothing is known, by a uniform number.
@@ -187,7 +187,7 @@ impl TouchChannel {
 pub(crate) struct DrawnSensor {
     pub state: SensorState,
     /// Probability of a touch from which on the sensor feels it.
-    pub felt_from: f64,
+    pub threshold: f64,
 }
 
 /// State of a sensor.
@@ -202,7 +202,7 @@ pub(crate) enum SensorState {
 /// threshold, and its gap in units of the gap's uncertainty. A contact that rests without pressing
 /// may or may not be felt, and the threshold is not known exactly.
 #[inline(always)]
-pub(crate) fn felt<const W: usize>(impulse: Lanes<W>, gap: Lanes<W>) -> Lanes<W> {
+pub(crate) fn touch_probability<const W: usize>(impulse: Lanes<W>, gap: Lanes<W>) -> Lanes<W> {
     let (one, half) = (Lanes::splat(1.0), Lanes::splat(0.5));
     let apart = gap.max(Lanes::ZERO);
     let near = (apart * -0.5 * apart).exp() * 0.5;
@@ -214,7 +214,7 @@ pub(crate) fn felt<const W: usize>(impulse: Lanes<W>, gap: Lanes<W>) -> Lanes<W>
 const QUARTERS: usize = 4;
 const QUARTER: f64 = 1.0 / QUARTERS as f64;
 
-/// Rate at which a stuck sensor gets free, and `felt_from` changes (1/s).
+/// Rate at which a stuck sensor gets free, and `threshold` changes (1/s).
 const RECOVERY: f64 = 0.5;
 
 #[cfg(test)]
@@ -303,7 +303,7 @@ mod tests {
             let draw = Streams::new(5).at(u64::from(sensor));
             let mut state = DrawnSensor {
                 state: channel.state_at(draw.uniform(0, 9)),
-                felt_from: draw.uniform(0, 10),
+                threshold: draw.uniform(0, 10),
             };
             let mut read = 0;
             for (row, touch) in (0..).zip(touches) {
@@ -342,10 +342,10 @@ mod tests {
     }
 
     #[test]
-    fn felt_grows_with_the_impulse_and_falls_with_the_gap() {
-        let felt = |impulse, gap| felt(Lanes([impulse]), Lanes([gap])).0[0];
-        assert_eq!(felt(0.0, 0.0), 0.5);
-        assert!(felt(3.0, 0.0) > 0.9 && felt(0.0, 3.0) < 0.01);
-        assert!(felt(0.0, f64::INFINITY) == 0.0 && felt(f64::INFINITY, 0.0) == 1.0);
+    fn touch_probability_grows_with_the_impulse_and_falls_with_the_gap() {
+        let touched = |impulse, gap| touch_probability(Lanes([impulse]), Lanes([gap])).0[0];
+        assert_eq!(touched(0.0, 0.0), 0.5);
+        assert!(touched(3.0, 0.0) > 0.9 && touched(0.0, 3.0) < 0.01);
+        assert!(touched(0.0, f64::INFINITY) == 0.0 && touched(f64::INFINITY, 0.0) == 1.0);
     }
 }

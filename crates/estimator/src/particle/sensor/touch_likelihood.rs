@@ -3,7 +3,7 @@
 use stickslip_dynamics::{Body, Lanes, on_widest};
 use stickslip_filter::BlockMut;
 
-use crate::particle::sensor::touch_channel::{TouchChannel, felt};
+use crate::particle::sensor::touch_channel::{TouchChannel, touch_probability};
 use crate::particle::set::chunk::{LANES, load_chunk, store_chunk};
 use crate::particle::transition::propagation::{
     Propagation, Transition, load_columns, store_columns,
@@ -13,14 +13,14 @@ use crate::particle::transition::step_plan::StepPlan;
 impl Propagation {
     /// Weighs what is known without the camera at the end of the step: the readings of the sensors
     /// and the pusher's place.
-    pub(crate) fn feel(
+    pub(crate) fn weigh_step(
         &mut self,
         transition: &Transition<'_>,
         plan: &StepPlan,
         block: &mut BlockMut<'_>,
     ) {
         block
-            .column_mut(transition.columns.felt_log_likelihood())
+            .column_mut(transition.columns.step_log_likelihood())
             .fill(0.0);
         on_widest(
             self.level,
@@ -62,10 +62,11 @@ impl Propagation {
                     false => Lanes::ZERO,
                 };
                 let gap = self.work.gaps(chunk, Body::Fixel(j)) / touch_gap;
-                let (after, log_likelihood) = channel.read(belief, felt(impulse, gap), reading);
+                let (after, log_likelihood) =
+                    channel.read(belief, touch_probability(impulse, gap), reading);
                 let log_likelihood = log_likelihood - Lanes::splat(most);
                 store_columns(block, columns.sensor(j), chunk, after.fields());
-                let column = columns.felt_log_likelihood();
+                let column = columns.step_log_likelihood();
                 let so_far = load_chunk(block.column(column), chunk, 0.0);
                 store_chunk(block.column_mut(column), chunk, &(so_far + log_likelihood));
             }

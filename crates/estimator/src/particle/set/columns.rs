@@ -112,7 +112,7 @@ impl Columns {
     }
 
     /// True if friction parameter `k` (in the order of its columns) ever took part (robust model).
-    pub fn felt(k: usize) -> Flag {
+    pub fn identified(k: usize) -> Flag {
         Self::flag(3 + k)
     }
 
@@ -142,7 +142,7 @@ impl Columns {
 
     /// log-likelihood of the pusher's place and the tactile readings of the latest row, without the
     /// camera (robust model).
-    pub fn felt_log_likelihood(&self) -> usize {
+    pub fn step_log_likelihood(&self) -> usize {
         self.unknowns()
     }
 
@@ -206,9 +206,9 @@ mod tests {
             let flags = [columns.contact_fixel(j), columns.fixel_was_near(j)];
             flags.into_iter().chain(of_slip(columns.slip_fixel(j)))
         });
-        let felt = (0..4).map(Columns::felt);
+        let identified = (0..4).map(Columns::identified);
         let single = single.into_iter().chain(of_slip(Columns::SLIP_PUSHER));
-        single.chain(felt).chain(of_fixels).collect()
+        single.chain(identified).chain(of_fixels).collect()
     }
 
     /// First column and length of all that holds numbers.
@@ -219,7 +219,7 @@ mod tests {
             (Columns::FRICTION, 4),
             (Columns::PUSHER_LAG, 2),
             (Columns::WARM_START, WARM),
-            (columns.felt_log_likelihood(), 1),
+            (columns.step_log_likelihood(), 1),
             (columns.camera_noise(), 3),
         ];
         numbers.extend((0..FIXELS).map(|j| (columns.sensor(j), BELIEF_LEN)));

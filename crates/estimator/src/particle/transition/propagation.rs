@@ -13,7 +13,7 @@ use crate::particle::set::columns::Columns;
 use crate::particle::set::observer::{Observer, SolvedStep};
 use crate::particle::transition::noise_clock::{NOISE_STEP, sharing};
 use crate::particle::transition::step_plan::{ParameterNoise, StepPlan};
-use crate::particle::unknown::friction::note_felt;
+use crate::particle::unknown::friction::note_identified;
 use crate::setup::{Limits, Setup};
 
 /// Chunks of particles in a block.
@@ -172,7 +172,7 @@ impl Propagation {
             || self.store(transition, plan, block),
         );
         if model == FilterModel::Robust {
-            self.feel(transition, plan, block);
+            self.weigh_step(transition, plan, block);
         }
     }
 
@@ -372,7 +372,7 @@ impl Propagation {
             let proposed = self.proposed[chunk].fields().into_iter();
             let mut phi = involved.phi();
             if transition.columns.model() == FilterModel::Robust {
-                note_felt(&mut phi, block, chunk);
+                note_identified(&mut phi, block, chunk);
             }
             for ((kept, proposed), took_part) in friction
                 .fields_mut()

@@ -35,14 +35,14 @@ impl Propagation {
                 if prior <= 0.0 || nominal <= 0.0 {
                     continue;
                 }
-                let felt = flag(&block.as_block(), Columns::felt(k), chunk);
+                let identified = flag(&block.as_block(), Columns::identified(k), chunk);
                 let fresh = load_chunk(&self.normals[k], chunk, 0.0) * prior;
                 let before = (*value * (1.0 / nominal)).ln();
                 let wandered = before * (1.0 - step * step).sqrt() + fresh * step;
-                let drawn = felt.select(wandered, fresh).exp() * nominal;
+                let drawn = identified.select(wandered, fresh).exp() * nominal;
                 let drawn = within(drawn, limits[k]);
                 // without a random step, a parameter that took part keeps its bits
-                let stays = felt & Mask::splat(step == 0.0);
+                let stays = identified & Mask::splat(step == 0.0);
                 *value = stays.select(*value, drawn);
             }
             self.proposed[chunk] = *friction;
@@ -61,12 +61,16 @@ fn within(value: Column, limits: &Limits) -> Column {
 /// Notes in a chunk's flags which parameters took part. Adds to `phi` those that never did: they
 /// are resampled from the prior.
 #[inline(always)]
-pub(crate) fn note_felt(phi: &mut Friction<Mask<LANES>>, block: &mut BlockMut<'_>, chunk: usize) {
+pub(crate) fn note_identified(
+    phi: &mut Friction<Mask<LANES>>,
+    block: &mut BlockMut<'_>,
+    chunk: usize,
+) {
     let mut flags = FlagsMut::new(block, chunk);
     for (k, took_part) in phi.fields_mut().into_iter().enumerate() {
-        let felt = flags.get(Columns::felt(k));
-        flags.set(Columns::felt(k), felt | *took_part);
-        *took_part = *took_part | !felt;
+        let identified = flags.get(Columns::identified(k));
+        flags.set(Columns::identified(k), identified | *took_part);
+        *took_part = *took_part | !identified;
     }
     flags.write();
 }

@@ -95,7 +95,7 @@ pub(crate) fn numbers(columns: Columns) -> impl Iterator<Item = Number> {
             let identified = match of.identified_by {
                 Event::PusherNear => Columns::PUSHER_WAS_NEAR,
                 Event::FixelNear => columns.fixel_was_near(fixel),
-                Event::Motion => Columns::felt(MU_S),
+                Event::Motion => Columns::identified(MU_S),
             };
             let first = columns.unknown(of.name, fixel);
             (first..first + of.numbers).map(move |column| Number {

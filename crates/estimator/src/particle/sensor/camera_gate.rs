@@ -1,10 +1,10 @@
 //! Decision whether camera poses that no particle explains are wrong, or the particles are (robust
-//! model): [`CameraTrust`].
+//! model): [`CameraGate`].
 
 use stickslip_filter::StepReport;
 
 /// Number of unexplained camera poses in a row after which the next one is accepted.
-pub(crate) const BELIEVED_AFTER: u32 = 4;
+pub(crate) const ACCEPTED_AFTER: u32 = 4;
 
 /// ln of the mean likelihood of a camera pose below which no particle explains it.
 const UNEXPLAINED: f64 = -10.0;
@@ -16,21 +16,21 @@ const UNEXPLAINED: f64 = -10.0;
 /// It also accepts the first pose after a time in which neither object nor pusher was seen: the
 /// object is then more likely to have been moved than the pose to be wrong.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct CameraTrust {
+pub(crate) struct CameraGate {
     unexplained: u32,
     /// True if the next pose is accepted.
-    believed: bool,
+    open: bool,
 }
 
-impl CameraTrust {
+impl CameraGate {
     /// Takes the next pose; `was_unwatched` is true if neither object nor pusher was seen since the
     /// pose before.
     ///
     /// Returns whether the pose is accepted, if that changes.
     pub fn expect(&mut self, was_unwatched: bool) -> Option<bool> {
-        let believed = was_unwatched || self.unexplained >= BELIEVED_AFTER;
-        let before = std::mem::replace(&mut self.believed, believed);
-        Some(believed).filter(|now| *now != before)
+        let open = was_unwatched || self.unexplained >= ACCEPTED_AFTER;
+        let before = std::mem::replace(&mut self.open, open);
+        Some(open).filter(|now| *now != before)
     }
 
     /// Takes the effect that a pose, on time or late, had on the particles.
