@@ -1,6 +1,6 @@
 //! Unknowns of the robust model besides friction: [`UNKNOWNS`], their one table (docs/model.md,
 //! "Unknowns"). Three loops go over it: the first draw, the step of each row, and the ensemble
-//! update, in [`moved`](super::moved). The units of their numbers are in [`rig`](super::rig).
+//! update, in [`moved`](super::moved). The units of their numbers are in [`units`](super::units).
 
 use stickslip_dynamics::{Twist, on_widest};
 use stickslip_filter::{BlockMut, Draw};
