@@ -250,7 +250,7 @@ impl<'o> ContactFilter<'o> {
 
     /// Writes the plan of the step to a row.
     fn plan_step(&mut self, measured: &Measured<'_>, drive: Drive<'_>) {
-        let columns = self.filter.model().columns();
+        let model = self.model();
         let plan = &mut self.plan;
         plan.substeps.clear();
         plan.substeps.extend_from_slice(drive.substeps);
@@ -280,7 +280,7 @@ impl<'o> ContactFilter<'o> {
         };
         if let Some(pusher) = drive.substeps.last().and_then(|step| step.pusher)
             && drive.moves
-            && columns.model() == FilterModel::Paper
+            && model == FilterModel::Paper
         {
             plan.touching = TOUCHING.max(speed(&pusher.twist) * plan.duration());
         }

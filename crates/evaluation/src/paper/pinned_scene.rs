@@ -6,7 +6,7 @@ use stickslip_formats::{Experiment, TruthFacts, read_scene};
 
 use super::replicate::{RATE, RunSettings};
 use super::scenes::PaperExperiment;
-use crate::run::{RunConditions, ScoredRun};
+use crate::run::ScoredRun;
 use crate::simulation::{
     PUSHER_MEMORY, Physics, REPEATS, Simulation, SimulationError, SimulationOptions,
 };
@@ -131,13 +131,7 @@ impl PinnedExperiment {
         seed: u64,
         settings: RunSettings,
     ) -> Result<ScoredRun, RunError> {
-        let conditions = RunConditions {
-            model: settings.model,
-            particles: settings.particles,
-            tracking: settings.tracking,
-            occlusion: self.occlusion,
-            seed,
-        };
+        let conditions = settings.conditions(self.occlusion, seed);
         ScoredRun::new(variant, &self.experiment, &conditions, None)
     }
 }

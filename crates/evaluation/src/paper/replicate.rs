@@ -25,6 +25,19 @@ pub struct RunSettings {
     pub tracking: Tracking,
 }
 
+impl RunSettings {
+    /// Conditions of a run with these rows hidden and this seed.
+    pub(super) fn conditions(self, occlusion: Occlusion, seed: u64) -> RunConditions {
+        RunConditions {
+            model: self.model,
+            particles: self.particles,
+            tracking: self.tracking,
+            occlusion,
+            seed,
+        }
+    }
+}
+
 /// One of the paper's experiments with one seed.
 #[derive(Clone, Debug)]
 pub struct Replicate {
@@ -87,13 +100,7 @@ impl Replicate {
     /// Conditions of every variant: the replicate's own occlusion and seed.
     #[must_use]
     pub fn conditions(&self, settings: RunSettings) -> RunConditions {
-        RunConditions {
-            model: settings.model,
-            particles: settings.particles,
-            tracking: settings.tracking,
-            occlusion: self.occlusion,
-            seed: self.seed,
-        }
+        settings.conditions(self.occlusion, self.seed)
     }
 
     /// `repeats`: share of frames that are repeated, `pusher_memory`: how long the pusher's error

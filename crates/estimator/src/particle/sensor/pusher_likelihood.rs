@@ -4,7 +4,7 @@
 use stickslip_dynamics::{Lanes, PusherMotion, StepInput, Twist};
 use stickslip_filter::BlockMut;
 
-use crate::particle::set::chunk::{Column, LANES, load_chunk, squared, store_chunk};
+use crate::particle::set::chunk::{Column, LANES, add_chunk, squared};
 use crate::particle::transition::propagation::{CHUNKS, Propagation, Transition};
 use crate::particle::transition::step_plan::{Drive, StepPlan};
 use crate::particle::unknown::units::roughness;
@@ -66,9 +66,8 @@ impl Propagation {
                 let stops = Lanes::splat(1.0) - goes_on * (1.0 - COMMANDED);
                 log_likelihood += (stops * (1.0 / COMMANDED)).ln();
             }
-            let column = columns.step_log_likelihood();
-            let so_far = load_chunk(block.column(column), chunk, 0.0);
-            store_chunk(block.column_mut(column), chunk, &(so_far + log_likelihood));
+            let column = block.column_mut(columns.step_log_likelihood());
+            add_chunk(column, chunk, log_likelihood);
         }
     }
 

@@ -4,7 +4,7 @@ use stickslip_dynamics::{Body, Lanes, on_widest};
 use stickslip_filter::BlockMut;
 
 use crate::particle::sensor::touch_channel::{TouchChannel, touch_probability};
-use crate::particle::set::chunk::{LANES, load_chunk, store_chunk};
+use crate::particle::set::chunk::{LANES, add_chunk};
 use crate::particle::transition::propagation::{
     Propagation, Transition, load_columns, store_columns,
 };
@@ -66,9 +66,8 @@ impl Propagation {
                     channel.read(belief, touch_probability(impulse, gap), reading);
                 let log_likelihood = log_likelihood - Lanes::splat(most);
                 store_columns(block, columns.sensor(j), chunk, after.fields());
-                let column = columns.step_log_likelihood();
-                let so_far = load_chunk(block.column(column), chunk, 0.0);
-                store_chunk(block.column_mut(column), chunk, &(so_far + log_likelihood));
+                let column = block.column_mut(columns.step_log_likelihood());
+                add_chunk(column, chunk, log_likelihood);
             }
         }
     }

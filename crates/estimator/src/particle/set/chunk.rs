@@ -37,6 +37,13 @@ pub(crate) fn store_chunk(column: &mut [f64], chunk: usize, from: &Column) {
     }
 }
 
+/// Adds to chunk `chunk` of a column.
+#[inline(always)]
+pub(crate) fn add_chunk(column: &mut [f64], chunk: usize, more: Column) {
+    let so_far = load_chunk(column, chunk, 0.0);
+    store_chunk(column, chunk, &(so_far + more));
+}
+
 /// Loads chunk `chunk` of three neighbouring columns, a pose.
 #[inline(always)]
 pub(crate) fn load_pose(block: &Block<'_>, first_column: usize, chunk: usize) -> Pose<Column> {

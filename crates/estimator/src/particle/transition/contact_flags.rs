@@ -27,11 +27,11 @@ impl Propagation {
         let Transition { setup, columns, .. } = transition;
         let rho = setup.scene.object.gyration_radius();
         let moves = moving(&self.particles[chunk].twist, rho);
-        let gap = |body| self.work.gaps(chunk, body);
-        let near = |body| gap(body).lt(Lanes::splat(f64::INFINITY));
-        let touches = |body| {
+        let near_and_touching = |body| {
+            let gap = self.work.gaps(chunk, body);
             let presses = self.work.normal_impulses(chunk, body).gt(Lanes::ZERO);
-            presses | !gap(body).gt(Lanes::splat(plan.touching))
+            let near = gap.lt(Lanes::splat(f64::INFINITY));
+            (near, presses | !gap.gt(Lanes::splat(plan.touching)))
         };
 
         // bodies that touch while nothing moves go on touching: the pusher's track is noisy
@@ -44,8 +44,9 @@ impl Propagation {
         // the pusher; a hidden one that carries the object along touches it, too
         let pusher = Body::Pusher;
         let carried = moving(&self.carried[chunk], rho);
-        let goes_on = rests & near(pusher) & flags.get(Columns::CONTACT_PUSHER);
-        let touched = touches(pusher) | goes_on | carried;
+        let (near, touches) = near_and_touching(pusher);
+        let goes_on = rests & near & flags.get(Columns::CONTACT_PUSHER);
+        let touched = touches | goes_on | carried;
         flags.set(Columns::CONTACT_PUSHER, touched);
         // what a standing pusher seems to move is the noise of its track
         let slides_from = Lanes::splat(match plan.pusher_stands() {
@@ -54,19 +55,20 @@ impl Propagation {
         });
         let slip = self.work.slips(chunk, pusher);
         store_slip(flags, Columns::SLIP_PUSHER, touched, (slip, slides_from));
-        let was_near = pusher_was_near | near(pusher) | carried;
+        let was_near = pusher_was_near | near | carried;
         flags.set(Columns::PUSHER_WAS_NEAR, was_near);
 
         // the fixels
         for j in 0..setup.scene.fixels.len() {
             let body = Body::Fixel(j);
-            let goes_on = rests & near(body) & flags.get(columns.contact_fixel(j));
-            let touched = touches(body) | goes_on;
+            let (near, touches) = near_and_touching(body);
+            let goes_on = rests & near & flags.get(columns.contact_fixel(j));
+            let touched = touches | goes_on;
             flags.set(columns.contact_fixel(j), touched);
             let slip = self.work.slips(chunk, body);
             store_slip(flags, columns.slip_fixel(j), touched, (slip, slides_from));
             let before = flags.get(columns.fixel_was_near(j));
-            flags.set(columns.fixel_was_near(j), before | near(body));
+            flags.set(columns.fixel_was_near(j), before | near);
         }
     }
 }

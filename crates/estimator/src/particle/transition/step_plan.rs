@@ -97,8 +97,7 @@ impl StepPlan {
         self.parameter_noise == ParameterNoise::Frozen
     }
 
-    /// Returns true if the particle rests unseen: nothing would tell copies of it apart (robust
-    /// model).
+    /// Returns true if the pusher stands and the camera shows nothing.
     pub(crate) fn rests_unseen(&self) -> bool {
         !self.driven && self.is_dark()
     }

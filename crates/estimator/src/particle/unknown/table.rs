@@ -205,7 +205,7 @@ impl Propagation {
     /// Takes the step (34) of every unknown. Until something has identified it, it is resampled
     /// from its prior. Afterwards it takes a random step that keeps the prior, while the pusher
     /// moves.
-    pub(crate) fn step_unknowns(
+    fn step_unknowns(
         &mut self,
         Transition { setup, columns, .. }: &Transition<'_>,
         plan: &StepPlan,
