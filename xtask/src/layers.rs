@@ -8,7 +8,9 @@ use crate::tree::Tree;
 type Layer = &'static [&'static str];
 
 /// Source folders with their layers, the lowest first. Every file but `lib.rs` is in one.
-const LAYERED: [(&str, &[Layer]); 1] = [(
+const LAYERED: [(&str, &[Layer]); 2] = [DYNAMICS, ESTIMATOR];
+
+const DYNAMICS: (&str, &[Layer]) = (
     "crates/dynamics/src/",
     &[
         &["se2", "friction"],
@@ -33,7 +35,49 @@ const LAYERED: [(&str, &[Layer]); 1] = [(
             "rollout",
         ],
     ],
-)];
+);
+
+const ESTIMATOR: (&str, &[Layer]) = (
+    "crates/estimator/src/",
+    &[
+        &[
+            "angle",
+            "belief_mode",
+            "contact_slip",
+            "counted",
+            "covariance",
+            "filter_model",
+            "gap",
+            "quantile",
+            "range",
+            "trajectory",
+            "tuning",
+        ],
+        &[
+            "uncertainty",
+            "setup",
+            "setup_check",
+            "estimate",
+            "row",
+            "error",
+            "pose_clock",
+            "log",
+            "occlusion",
+        ],
+        &["pusher/", "options"],
+        &[
+            "particle/set/",
+            "particle/unknown/",
+            "particle/transition/",
+            "particle/sensor/",
+            "particle/estimate/",
+            "particle/model",
+        ],
+        &["particle/"],
+        &["tracker", "prepared_log", "baseline/", "run", "diagnosis/"],
+        &["particle_budget", "prior_sample"],
+    ],
+);
 
 /// Every file of the layered folders.
 pub fn check(tree: &Tree) -> Vec<Finding> {

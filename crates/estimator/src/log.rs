@@ -4,7 +4,7 @@ use stickslip_dynamics::Pose;
 
 use crate::covariance::PoseCovariance;
 use crate::error::RunError;
-use crate::particle::sensor::pose_clock::PoseClock;
+use crate::pose_clock::PoseClock;
 use crate::quantile::quantile;
 use crate::row::{LONGEST_PAUSE, Row, unit_of_times};
 

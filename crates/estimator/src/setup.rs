@@ -3,6 +3,7 @@
 
 use stickslip_dynamics::{Feet, Friction, Part, Scene, Start};
 
+use crate::tuning::PUSHER_SIGMAS;
 use crate::uncertainty::Uncertainty;
 
 /// Noise of the camera and of the pusher's tracker.
@@ -113,13 +114,6 @@ impl FilterSettings {
         settings
     }
 }
-
-/// Largest lag of a pusher behind its logged position, in standard deviations of that position.
-const PUSHER_SIGMAS: f64 = 3.0;
-
-/// Stall force of an unspecified drive, as a multiple of the force μ_s m g that slides the object
-/// alone at its nominal friction (docs/method.md, "Jamming").
-pub const ASSUMED_STALL: f64 = 20.0;
 
 /// A scene with its sensors and filter settings.
 #[derive(Clone, Debug)]

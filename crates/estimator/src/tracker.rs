@@ -12,15 +12,16 @@ use crate::options::{RunOptions, TactileUse};
 use crate::particle::contact_filter::FilterOptions;
 use crate::particle::contact_filter::{ContactFilter, Measured};
 use crate::particle::sensor::observation::PoseAt;
-use crate::particle::sensor::pose_clock::PoseClock;
 use crate::particle::set::observer::Observer;
 use crate::particle::set::view::ParticleView;
 use crate::particle::transition::step_plan::Drive;
+use crate::pose_clock::PoseClock;
 use crate::pusher::causal::CausalTrack;
-use crate::pusher::schedule::{SHORTEST_STEP, split};
+use crate::pusher::schedule::split;
 use crate::pusher::tracked_pose::{TrackedPose, motion, step_length};
 use crate::row::{LONGEST_PAUSE, Row, RowError};
 use crate::setup::{Camera, Setup};
+use crate::tuning::SHORTEST_STEP;
 
 /// Direction in which a pusher that has not moved yet may yield.
 const FIRST_DIRECTION: [f64; 2] = [1.0, 0.0];

@@ -1,6 +1,7 @@
 //! Uncertainty of a scene file's numbers: [`Uncertainty`], which the robust model allows for
 //! (docs/model.md).
 
+use crate::tuning::{BETWEEN_HALVES, LATENCY_SPREAD, LATEST};
 use stickslip_dynamics::{Friction, Lanes};
 
 /// `[uncertainty]` of a scene file: priors of what its other numbers leave open. The paper's model
@@ -70,19 +71,6 @@ impl Default for Uncertainty {
         }
     }
 }
-
-/// Share of its spread by which every unknown wanders within 1/30 s: copies of a particle must
-/// differ.
-pub(crate) const JITTER: f64 = 0.1;
-
-/// Steepness of the transition between the two halves of rigs, per unit of ln of roughness.
-const BETWEEN_HALVES: f64 = 10.0;
-
-/// Standard deviation of the logarithm of the camera's unknown latency.
-const LATENCY_SPREAD: f64 = 1.2;
-
-/// Multiple of its median that this latency may reach: it is longer on one rig in eighty.
-const LATEST: f64 = 15.0;
 
 impl Uncertainty {
     /// Returns the uncertainty with feet that are known to stand as the scene says.

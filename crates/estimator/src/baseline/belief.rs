@@ -7,7 +7,7 @@ use stickslip_filter::Gaussian;
 
 use crate::estimate::{CrossCovariance, EstimateRow, Spread};
 use crate::setup::{Limits, Setup};
-use crate::uncertainty::JITTER;
+use crate::tuning::JITTER;
 
 /// Numbers of a state: x, y, θ (m, m, rad), v_x, v_y, ω (m/s, m/s, rad/s), ln β/β_nominal of the
 /// four friction parameters, and w_app in units of its standard deviations.

@@ -6,8 +6,8 @@ use stickslip_dynamics::Pose;
 use crate::angle::unwrapped;
 use crate::baseline::belief::{Belief, STATES, TWIST};
 use crate::covariance::PoseCovariance;
-use crate::particle::sensor::camera_gate::ACCEPTED_AFTER;
 use crate::setup::Camera;
+use crate::tuning::ACCEPTED_AFTER;
 
 /// Squared Mahalanobis distance of the innovation that one right pose in 10,000 exceeds: χ² of
 /// three degrees of freedom.

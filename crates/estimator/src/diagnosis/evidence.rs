@@ -8,9 +8,9 @@ use super::two_places::TwoPlaces;
 use crate::angle::nearest_winding;
 use crate::gap::gap;
 use crate::log::Log;
-use crate::particle::sensor::pose_clock::TELLING;
 use crate::pusher::tracked_pose::bridged;
 use crate::setup::Setup;
+use crate::tuning::TELLING_INTERVALS;
 
 /// Half the time over which an object's motion is judged (s).
 pub(super) const HALF_WINDOW: f64 = 0.15;
@@ -67,7 +67,8 @@ impl<'a> Evidence<'a> {
             lasting: None,
             seen: rows_with(&log.object),
             pusher_seen,
-            pusher_interval: crate::quantile(&steps, 0.5).filter(|_| steps.len() >= TELLING),
+            pusher_interval: crate::quantile(&steps, 0.5)
+                .filter(|_| steps.len() >= TELLING_INTERVALS),
             moving: Vec::new(),
         };
         evidence.two_places = TwoPlaces::of(&evidence);

@@ -5,7 +5,7 @@ use stickslip_dynamics::Pose;
 use super::evidence::Evidence;
 use super::finding::{Finding, Subject};
 use crate::counted::counted;
-use crate::pusher::tracked_pose::LONGEST_BRIDGE;
+use crate::tuning::LONGEST_BRIDGE;
 
 /// Share of missing object poses that is worth a warning.
 const MANY: f64 = 0.2;

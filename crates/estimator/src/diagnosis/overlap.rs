@@ -4,7 +4,7 @@ use stickslip_dynamics::Pose;
 
 use super::evidence::{Evidence, mm};
 use super::finding::{Finding, Subject};
-use crate::pusher::tracked_pose::LONGEST_BRIDGE;
+use crate::tuning::LONGEST_BRIDGE;
 
 pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
     let Some(row) = evidence.log.object.iter().position(Option::is_some) else {

@@ -2,7 +2,8 @@
 
 use super::evidence::Evidence;
 use super::finding::{Finding, Subject};
-use crate::setup::{ASSUMED_STALL, Setup};
+use crate::setup::Setup;
+use crate::tuning::ASSUMED_STALL;
 
 /// Finds an assumed stall force of the pusher, with its value and what to write instead; `None` if
 /// the scene gives one.

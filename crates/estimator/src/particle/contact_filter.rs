@@ -16,19 +16,17 @@ use crate::particle::estimate::sums::Reference;
 use crate::particle::model::ContactModel;
 use crate::particle::sensor::camera_gate::CameraGate;
 use crate::particle::sensor::observation::{Observation, PoseAt};
-use crate::particle::sensor::pose_clock::PoseClock;
 use crate::particle::sensor::pusher_likelihood::{Push, speed};
 use crate::particle::set::history::PoseHistory;
 use crate::particle::set::observer::Observer;
 use crate::particle::set::view::ParticleView;
-use crate::particle::transition::contact_flags::TOUCHING;
 use crate::particle::transition::noise_clock::NoiseClock;
 use crate::particle::transition::step_plan::{Drive, ParameterNoise, StepPlan};
 use crate::particle::transition::unseen_pusher::HiddenPusher;
+use crate::pose_clock::PoseClock;
 use crate::setup::{Camera, Setup};
-
-/// Least share of a camera pose that moves particles; the rest weighs them (docs/model.md (45)).
-const LEAST_MOVED: f64 = 0.9;
+use crate::tuning::LEAST_MOVED;
+use crate::tuning::TOUCHING;
 
 /// Measurements of a row.
 #[derive(Clone, Copy, Debug)]

@@ -19,10 +19,7 @@ use crate::particle::transition::step_plan::StepPlan;
 use crate::particle::unknown::moved;
 use crate::particle::unknown::table;
 use crate::setup::{Camera, Setup};
-
-/// Best log-likelihood below which no particle explains the observation. The particles are then
-/// reinitialised around it (docs/method.md (27)).
-const COLLAPSED: f64 = -6.0;
+use crate::tuning::COLLAPSED;
 
 /// The model of one setup, started at one pose.
 ///

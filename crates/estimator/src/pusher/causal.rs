@@ -10,17 +10,11 @@ use stickslip_dynamics::Pose;
 use stickslip_filter::{AxisEstimate, ConstantVelocity, ImmState, InteractingMultipleModel};
 
 use crate::error::RunError;
-use crate::particle::sensor::pose_clock::PoseClock;
+use crate::pose_clock::PoseClock;
 use crate::pusher::jumps::JumpGate;
-use crate::pusher::tracked_pose::{INITIAL_VELOCITY_STD, TrackedPose, bridged};
+use crate::pusher::tracked_pose::{TrackedPose, bridged};
 use crate::setup::Camera;
-
-/// Models of the pusher's motion: times T (s) in which the noise of the motion reaches that of one
-/// measurement, q = std²/T³.
-const LIVELINESS: [f64; 3] = [10.0, 0.5, 0.05];
-
-/// Mean time for which one of these models applies (s).
-const MEAN_SOJOURN_TIME: f64 = 30.0;
+use crate::tuning::{INITIAL_VELOCITY_STD, LIVELINESS, MEAN_SOJOURN_TIME};
 
 /// Tracks the pusher row by row.
 #[derive(Clone, Debug)]

@@ -6,16 +6,7 @@ use stickslip_dynamics::Pose;
 use crate::angle::nearest_winding;
 use crate::log::Log;
 use crate::setup::Camera;
-
-/// Acceleration that no pusher has (m/s²), and a distance of its parts from its centre (m).
-const ACCELERATION: f64 = 20.0;
-const RADIUS: f64 = 0.05;
-
-/// Jump that does little harm (m).
-const LEAST: f64 = 2e-3;
-
-/// Standard deviations by which no pose errs.
-const SIGMAS: f64 = 20.0;
+use crate::tuning::{JUMP_SIGMAS, LEAST_JUMP, MOST_ACCELERATION, PART_RADIUS};
 
 /// Rejects poses that the pusher cannot have reached since the two before: wrong detections of its
 /// tag. If such poses go on, the time to get there grows, until one is accepted.
@@ -93,10 +84,10 @@ impl JumpGate {
         let turn = off(pose.theta, last.theta, before.theta);
         let away = off(pose.x, last.x, before.x).hypot(off(pose.y, last.y, before.y));
         // uneven steps multiply the noise of the extrapolated pose
-        let noise = SIGMAS * (1.0 + ratio);
-        let way = LEAST + 0.5 * ACCELERATION * h * h;
+        let noise = JUMP_SIGMAS * (1.0 + ratio);
+        let way = LEAST_JUMP + 0.5 * MOST_ACCELERATION * h * h;
         away > way + noise * self.position_std
-            || turn.abs() > way / RADIUS + noise * self.orientation_std
+            || turn.abs() > way / PART_RADIUS + noise * self.orientation_std
     }
 }
 

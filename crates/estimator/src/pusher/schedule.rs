@@ -3,16 +3,7 @@
 use stickslip_dynamics::{PusherMotion, StepInput};
 
 use crate::pusher::track::PusherTrack;
-
-/// Length above which a step is split (s).
-const LONGEST_STEP: f64 = 0.055;
-
-/// Length of the shortest step from row to row (s). A step moves overlapping bodies apart within
-/// its time: in a shorter one, a small overlap would throw them apart.
-pub const SHORTEST_STEP: f64 = 5e-4;
-
-/// Length that the parts of a split step do not exceed (s).
-const SPLIT_TO: f64 = 0.05;
+use crate::tuning::{LONGEST_STEP, SHORTEST_STEP, SPLIT_TO};
 
 /// The substeps of every step of a log.
 #[derive(Clone, Debug, PartialEq)]

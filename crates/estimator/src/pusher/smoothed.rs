@@ -8,14 +8,11 @@ use stickslip_filter::{AxisEstimate, ConstantVelocity};
 
 use crate::error::RunError;
 use crate::log::Log;
-use crate::particle::sensor::pose_clock::TELLING;
 use crate::pusher::jumps::accepted;
-use crate::pusher::tracked_pose::{INITIAL_VELOCITY_STD, TrackedPose, bridged};
+use crate::pusher::tracked_pose::{TrackedPose, bridged};
 use crate::quantile::quantile;
 use crate::setup::Camera;
-
-/// Gain in ln of a series' likelihood from which on a larger noise replaces the nominal one.
-const CLEARLY: f64 = 12.0;
+use crate::tuning::{INITIAL_VELOCITY_STD, LARGER_NOISE_GAIN, TELLING_INTERVALS};
 
 /// Larger noises that are tried, as multiples of the nominal one.
 const LARGER: [f64; 7] = [2.0, 3.0, 4.5, 7.0, 10.0, 15.0, 25.0];
@@ -44,7 +41,7 @@ fn spans(time: &[f64], poses: &[Option<Pose>]) -> Vec<Range<usize>> {
         .collect();
     let intervals = seen.windows(2).map(|pair| time[pair[1]] - time[pair[0]]);
     let intervals: Vec<f64> = intervals.collect();
-    let interval = quantile(&intervals, 0.5).filter(|_| intervals.len() >= TELLING);
+    let interval = quantile(&intervals, 0.5).filter(|_| intervals.len() >= TELLING_INTERVALS);
     let bridged = |from: usize, to: usize| bridged(time[from], time[to], interval);
     let mut spans: Vec<Range<usize>> = Vec::new();
     for row in seen {
@@ -125,7 +122,7 @@ fn fitted(time: &[f64], measured: &[Option<f64>], std: f64) -> Result<ConstantVe
         ))
     };
     let (mut best, stated) = fit(std)?;
-    let mut most = stated + CLEARLY;
+    let mut most = stated + LARGER_NOISE_GAIN;
     for factor in LARGER {
         let (larger, log_likelihood) = fit(factor * std)?;
         if log_likelihood > most {

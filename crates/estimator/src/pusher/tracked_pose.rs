@@ -1,24 +1,8 @@
 //! The pusher at one row of its track: [`TrackedPose`], and the motion between two of them.
 
+use crate::tuning::{BRIDGED_INTERVALS, LONGEST_BRIDGE, STANDSTILL, TELLING_SPEED};
 use stickslip_dynamics::{Pose, PusherMotion};
 use stickslip_filter::AxisEstimate;
-
-/// Longest gap in frequent pusher poses that the tracker bridges (s). In a longer one the pusher is
-/// off the plane.
-pub const LONGEST_BRIDGE: f64 = 0.2;
-
-/// Number of typical intervals between infrequent pusher poses that the tracker bridges.
-const BRIDGED_INTERVALS: f64 = 2.5;
-
-/// Standard deviation of a velocity about 0 at the first measurement (m/s, rad/s).
-pub(crate) const INITIAL_VELOCITY_STD: f64 = 0.1;
-
-/// Standard deviations of its own that a tracked speed must exceed to tell the pusher's direction.
-const TELLING: f64 = 3.0;
-
-/// Speed below which a pusher stands, however exactly its poses are known (m/s): the recoil of a
-/// stalled drive tells no direction.
-const STANDSTILL: f64 = 1e-5;
 
 /// The pusher at one row of its track.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,7 +32,7 @@ impl TrackedPose {
     /// Returns true if the tracked speed exceeds what noise makes of a standing pusher.
     pub fn moves(&self) -> bool {
         let speed = self.velocity[0].hypot(self.velocity[1]);
-        speed > TELLING * self.speed_std && speed > STANDSTILL
+        speed > TELLING_SPEED * self.speed_std && speed > STANDSTILL
     }
 }
 

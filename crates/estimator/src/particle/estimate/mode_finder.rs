@@ -8,16 +8,10 @@ use crate::belief_mode::BeliefMode;
 use crate::particle::estimate::group::{Moments, Point, dot, minus, squared};
 use crate::particle::model::ContactModel;
 use crate::particle::set::columns::Columns;
+use crate::tuning::{LEAST_DISTANCE, LEAST_WEIGHT};
 
 /// Largest number of groups.
 const MOST_MODES: u8 = 8;
-
-/// Least weight of a mode, as a share of the belief.
-const LEAST_WEIGHT: f64 = 0.02;
-
-/// Least distance of two modes, in root mean square standard deviations of the two (Ashman, Bird &
-/// Zepf 1994: D). A normal distribution cut in two has 2.6, a uniform one 3.5.
-const LEAST_DISTANCE: f64 = 4.0;
 
 /// Number of bins along an axis in which a cut is sought.
 const BINS: usize = 64;

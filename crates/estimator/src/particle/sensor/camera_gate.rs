@@ -1,13 +1,8 @@
 //! Decision whether camera poses that no particle explains are wrong, or the particles are (robust
 //! model): [`CameraGate`].
 
+use crate::tuning::{ACCEPTED_AFTER, UNEXPLAINED};
 use stickslip_filter::StepReport;
-
-/// Number of unexplained camera poses in a row after which the next one is accepted.
-pub(crate) const ACCEPTED_AFTER: u32 = 4;
-
-/// ln of the mean likelihood of a camera pose below which no particle explains it.
-const UNEXPLAINED: f64 = -10.0;
 
 /// Gate that accepts camera poses which no particle explains.
 ///

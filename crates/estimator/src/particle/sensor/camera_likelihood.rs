@@ -11,6 +11,7 @@ use crate::particle::set::chunk::{Column, load_chunk, load_pose};
 use crate::particle::set::columns::Columns;
 use crate::particle::unknown::table::Name;
 use crate::setup::{Camera, Setup};
+use crate::tuning::WRONG;
 use crate::uncertainty::Uncertainty;
 
 /// Likelihood of a camera pose: normal, with the row's own covariance or the camera's, the standard
@@ -30,9 +31,6 @@ pub(crate) struct CameraLikelihood {
     /// Likelihood of a pose that is wrong (robust model); that of a perfect one is 1.
     wrong: Option<f64>,
 }
-
-/// Likelihood of a wrong pose, relative to that of a perfect one.
-pub(crate) const WRONG: f64 = 3e-7;
 
 /// Squared distances of a measured pose from what particles show, in units of the nominal standard
 /// deviations.

@@ -6,9 +6,7 @@ use stickslip_filter::{Block, BlockMut, Draw};
 
 use crate::particle::set::chunk::{Column, load_chunk, store_chunk};
 use crate::particle::set::columns::Columns;
-
-/// Standard deviations up to which the prior explains the logarithm of the camera's noise.
-const MOST_SPREADS: f64 = 3.0;
+use crate::tuning::{MEMORY, MOST_SPREADS};
 
 /// Prior of the camera's noise. Its variance, in units of the nominal one, is ν₀ over a χ² number
 /// of ν₀ degrees of freedom (docs/model.md (41)).
@@ -84,9 +82,6 @@ pub(crate) struct CameraNoise {
     position: Column,
     angle: Column,
 }
-
-/// Memory in poses: the newest one makes up one part in so many, since the noise may change slowly.
-pub(crate) const MEMORY: f64 = 300.0;
 
 impl CameraNoise {
     /// Loads the noise of one chunk.

@@ -4,7 +4,6 @@ pub(crate) mod camera_gate;
 pub(crate) mod camera_likelihood;
 pub(crate) mod camera_noise;
 pub(crate) mod observation;
-pub(crate) mod pose_clock;
 pub(crate) mod pusher_likelihood;
 pub(crate) mod tactile_likelihood;
 pub(crate) mod touch_channel;

@@ -8,10 +8,7 @@ use crate::particle::set::chunk::{Column, LANES, add_chunk, squared};
 use crate::particle::transition::propagation::{CHUNKS, Propagation, Transition};
 use crate::particle::transition::step_plan::{Drive, StepPlan};
 use crate::particle::unknown::units::roughness;
-
-/// Probability that a pusher which stops was commanded to stop just there, over that of a stop by a
-/// jam.
-const COMMANDED: f64 = 0.03;
+use crate::tuning::COMMANDED;
 
 /// Motion of the pusher since it stood last.
 #[derive(Clone, Copy, Debug, Default)]

@@ -3,6 +3,7 @@
 use stickslip_dynamics::Lanes;
 
 use crate::setup::Tactile;
+use crate::tuning::RECOVERY;
 
 /// Number of numbers of a [`SensorBelief`], each a column.
 pub(crate) const BELIEF_LEN: usize = 2 + QUARTERS;
@@ -213,9 +214,6 @@ pub(crate) fn touch_probability<const W: usize>(impulse: Lanes<W>, gap: Lanes<W>
 /// Number of parts from 0 to 1, and the size of each.
 const QUARTERS: usize = 4;
 const QUARTER: f64 = 1.0 / QUARTERS as f64;
-
-/// Rate at which a stuck sensor gets free, and `threshold` changes (1/s).
-const RECOVERY: f64 = 0.5;
 
 #[cfg(test)]
 mod tests {

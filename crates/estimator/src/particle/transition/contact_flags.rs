@@ -7,12 +7,7 @@ use crate::particle::set::chunk::{Column, FlagsMut, LANES};
 use crate::particle::set::columns::{Columns, SlipFlags};
 use crate::particle::transition::propagation::{Propagation, Transition, moving};
 use crate::particle::transition::step_plan::StepPlan;
-
-/// Gap up to which bodies touch (m).
-pub(crate) const TOUCHING: f64 = 1e-4;
-
-/// Slip velocity (m/s) above which a contact slides.
-const SLIDING: f64 = 1e-4;
+use crate::tuning::SLIDING;
 
 impl Propagation {
     /// Sets the flags of contact of one chunk (docs/method.md, "Contact flags").

@@ -4,7 +4,7 @@ use stickslip_dynamics::{StepInput, Twist};
 
 use crate::particle::estimate::sums::Reference;
 use crate::particle::sensor::observation::Observation;
-use crate::particle::transition::contact_flags::TOUCHING;
+use crate::tuning::TOUCHING;
 
 /// Pair of normal numbers of objects that an unseen pusher carries: behind those of all substeps.
 pub(crate) const UNSEEN_PAIR: u32 = 1 << 20;

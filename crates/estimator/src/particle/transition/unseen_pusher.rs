@@ -9,10 +9,9 @@ use crate::particle::set::chunk::{Column, LANES, is_set};
 use crate::particle::set::columns::Columns;
 use crate::particle::transition::propagation::{Propagation, Transition};
 use crate::particle::transition::step_plan::{StepPlan, UNSEEN_PAIR, UnseenPusher};
-
-/// Gap of the object and an unseen pusher up to which the pusher counts as having reached the
-/// object (m).
-const REACHED: f64 = 1e-3;
+use crate::tuning::{
+    AROUND, JUST_BACK, MISSES, REACHED, UNSEEN_LASTS, UNSEEN_LASTS_IN_THE_DARK, UNSEEN_SPEED,
+};
 
 /// State of the pusher when it was last seen, and its motion since.
 #[derive(Clone, Copy, Debug)]
@@ -27,10 +26,6 @@ pub(crate) struct HiddenPusher {
     /// hidden.
     back_for: f64,
 }
-
-/// Time for which a pusher that is seen again counts as just back (s): bodies that have come to
-/// overlap meanwhile part.
-const JUST_BACK: f64 = 0.2;
 
 impl Default for HiddenPusher {
     fn default() -> Self {
@@ -95,23 +90,6 @@ impl HiddenPusher {
         })
     }
 }
-
-/// Least speed of an unseen pusher (m/s).
-const UNSEEN_SPEED: f64 = 0.01;
-
-/// Time for which an object that an unseen pusher carries goes on as it does, or rests (s).
-const UNSEEN_LASTS: f64 = 0.15;
-
-/// Time for which it does so if the object is not seen, either (s).
-const UNSEEN_LASTS_IN_THE_DARK: f64 = 1.0;
-
-/// Probability that a pusher which would have reached the object has not, having stopped or been
-/// lifted.
-const MISSES: f64 = 0.25;
-
-/// Spread of the velocity at which a pusher that has reached the object carries it on, about its
-/// own, and of the turn, as a share of the pusher's last speed.
-const AROUND: f64 = 0.5;
 
 impl Propagation {
     /// Lets an unseen pusher carry the object along, or not. The velocity differs between

@@ -9,9 +9,7 @@ use crate::particle::set::columns::Columns;
 use crate::particle::transition::noise_clock::NOISE_STEP;
 use crate::particle::transition::propagation::{Propagation, Transition};
 use crate::particle::transition::step_plan::StepPlan;
-
-/// Time within which the estimate follows an object that is moved by hand (s).
-const FOLLOWED: f64 = 1.0;
+use crate::tuning::FOLLOWED;
 
 impl Propagation {
     /// Notes the particles that nothing has come near yet: their objects rest where they were first

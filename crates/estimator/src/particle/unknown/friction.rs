@@ -9,7 +9,7 @@ use crate::particle::transition::noise_clock::NOISE_STEP;
 use crate::particle::transition::propagation::{Propagation, Transition};
 use crate::particle::transition::step_plan::StepPlan;
 use crate::setup::Limits;
-use crate::uncertainty::JITTER;
+use crate::tuning::JITTER;
 
 impl Propagation {
     /// Draws the object's friction. A parameter that never took part is resampled from its prior.

@@ -10,7 +10,7 @@ use crate::particle::set::columns::{Columns, Flag};
 use crate::particle::transition::propagation::{Propagation, Transition};
 use crate::particle::transition::step_plan::{StepPlan, UNSEEN_PAIR};
 use crate::setup::Setup;
-use crate::uncertainty::JITTER;
+use crate::tuning::JITTER;
 
 /// An unknown of every particle: neighbouring columns, whose numbers have the standard normal
 /// distribution as prior.

@@ -1,13 +1,8 @@
 //! Times when a body is out of sight: [`PoseClock`], which knows how often its poses come.
 
+use crate::tuning::{DARK_AFTER, TELLING_INTERVALS};
 /// Number of past intervals from pose to pose that are remembered.
 const REMEMBERED: usize = 15;
-
-/// Number of intervals from which a typical one is known.
-pub(crate) const TELLING: usize = 5;
-
-/// Number of typical intervals without a pose after which the camera is off.
-const DARK_AFTER: f64 = 2.5;
 
 /// Rate of the poses of object or pusher, from the rows so far.
 ///
@@ -43,7 +38,7 @@ impl PoseClock {
 
     /// Returns the typical time from pose to pose (s), once enough of them have come.
     pub fn interval(&self) -> Option<f64> {
-        let typical = self.typical().filter(|_| self.known >= TELLING);
+        let typical = self.typical().filter(|_| self.known >= TELLING_INTERVALS);
         typical.map(|(interval, _)| interval)
     }
 
