@@ -21,6 +21,7 @@ from stickslip._files import Topics, info, load_log, load_scene, load_truth
 from stickslip._filter import FilterOptions, Progress, filter, particles, samples
 from stickslip._fit import Fit, fit
 from stickslip._native import Error, Scene, Warning, __version__
+from stickslip._outline import Outlines, Polygons, outlines
 from stickslip._rollout import Rollout, rollout
 from stickslip._score import score
 from stickslip._simulate import Simulation, simulate
@@ -34,6 +35,8 @@ __all__ = [
     "Finding",
     "Fit",
     "Log",
+    "Outlines",
+    "Polygons",
     "Progress",
     "Rollout",
     "Row",
@@ -51,6 +54,7 @@ __all__ = [
     "load_log",
     "load_scene",
     "load_truth",
+    "outlines",
     "particles",
     "rollout",
     "rows",

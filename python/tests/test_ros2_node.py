@@ -1,300 +1,272 @@
-"""The node of examples/ros2_node.py: its functions on messages that have the fields of ROS's, and it as a whole on a
-stand-in for ROS that only passes messages on."""
+"""The node of ros2/stickslip_ros gives the estimates of the library.
 
-import importlib.util
+The messages go through the middleware of rclpy where it is installed, else through a stand-in.
+"""
+
 import math
-import sys
-from collections import defaultdict
-from types import ModuleType, SimpleNamespace
-from unittest.mock import MagicMock
+import re
+import tomllib
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+import ros2_session
+import yaml
 from conftest import ROOT
+from ros2_session import Session, place
 
 import stickslip
+from stickslip_ros import messages, planar, quality
+from stickslip_ros.node import PARAMETERS, StickslipNode
 
-_spec = importlib.util.spec_from_file_location("ros2_node", ROOT / "examples/ros2_node.py")
-assert _spec is not None and _spec.loader is not None
-node = importlib.util.module_from_spec(_spec)
-_spec.loader.exec_module(node)
+PACKAGE = ROOT / "ros2/stickslip_ros"
 
-
-def _stamp(time):
-    nanoseconds = round(time * 1e9)
-    return SimpleNamespace(sec=nanoseconds // 10**9, nanosec=nanoseconds % 10**9)
+#: A rate whose period has no rounding error (Hz).
+RATE = 32.0
 
 
-def _place(x=0.0, y=0.0, yaw=0.0):
-    position = SimpleNamespace(x=x, y=y, z=0.3)
-    return position, SimpleNamespace(x=0.0, y=0.0, z=math.sin(yaw / 2), w=math.cos(yaw / 2))
+@pytest.fixture(scope="module")
+def recorded(tmp_path_factory):
+    """An experiment folder: the camera is off for a second about the touch of a fixel, sensor 1 starts late."""
+    simulation = stickslip.simulate(ROOT / "crates/cli/demo/turn-square-disc/scene.toml", rate=RATE, seed=1)
+    for name in ("object_x", "object_y", "object_theta"):
+        simulation.log[name][50:82] = np.nan
+    simulation.log["tactile_1"][:5] = np.nan
+    folder = tmp_path_factory.mktemp("ros2") / "exp"
+    simulation.write(folder)
+    return folder
 
 
-def _pose(time, x, y, yaw):
-    position, orientation = _place(x, y, yaw)
-    return SimpleNamespace(
-        header=SimpleNamespace(stamp=_stamp(time), frame_id="table"),
-        pose=SimpleNamespace(position=position, orientation=orientation),
+def carried(pose):
+    """Returns a pose as messages carry it, with a quaternion."""
+    message = ros2_session.PoseStamped()
+    place(message.pose.position, message.pose.orientation, pose)
+    return planar.planar(message.pose.position, message.pose.orientation)
+
+
+def as_carried(log):
+    """Returns a log with poses as messages carry them."""
+    log = {name: column.copy() for name, column in log.items()}
+    for body in ("object", "pusher"):
+        names = [f"{body}_{name}" for name in ("x", "y", "theta")]
+        for row in np.flatnonzero(~np.isnan(log[names[0]])):
+            for name, value in zip(names, carried([log[name][row] for name in names]), strict=True):
+                log[name][row] = value
+    return log
+
+
+def play(session, log, delay=0):
+    """Sends the messages of a log in the order of their arrival; object poses are ``delay`` rows late."""
+    rows, reads = list(stickslip.rows(log)), {}
+    for k, row in enumerate(rows):
+        session.pose("/pusher/pose", row["time"], row["pusher"])
+        for sensor, on in enumerate(row["tactile"]):
+            # a sensor that speaks up when it changes
+            if on is not None and on != reads.get(sensor):
+                session.touch(f"/fixel_{sensor + 1}/contact", on)
+                reads[sensor] = on
+        late = rows[k - delay] if k >= delay else None
+        if late and late["object"]:
+            session.pose("/object/pose", late["time"], late["object"])
+        session.tick()
+
+
+def numbers(message):
+    """Returns stamp, place, heading and covariance of a pose."""
+    at = message.pose.pose
+    return (
+        planar.seconds(message.header.stamp),
+        (at.position.x, at.position.y, at.orientation.z, at.orientation.w),
+        tuple(message.pose.covariance),
     )
 
 
-def _transform(time, x, y, yaw):
-    translation, rotation = _place(x, y, yaw)
-    return SimpleNamespace(
-        header=SimpleNamespace(stamp=_stamp(time)),
-        transform=SimpleNamespace(translation=translation, rotation=rotation),
-    )
+def expected(estimate):
+    """Returns the numbers of the message with an estimate."""
+    return numbers(messages.pose(estimate, "table", estimate["time"]))
 
 
-def test_poses_are_laid_into_the_plane():
-    for yaw in np.linspace(-3.1, 3.1, 13):
-        np.testing.assert_allclose(node.planar(*_place(1.0, -2.0, yaw)), (1.0, -2.0, yaw), atol=1e-15)
-    # 20 degrees over its own y-axis and 90 about z: the x-axis still heads along y
-    half, tilt = math.pi / 4, math.radians(10)
-    quaternion = SimpleNamespace(
-        x=-math.sin(half) * math.sin(tilt),
-        y=math.cos(half) * math.sin(tilt),
-        z=math.sin(half) * math.cos(tilt),
-        w=math.cos(half) * math.cos(tilt),
-    )
-    assert node.planar(_place()[0], quaternion)[2] == pytest.approx(math.pi / 2)
-    assert node.seconds(_stamp(12.25)) == 12.25
+def pairs(health):
+    """Returns the values of a diagnostic status by key."""
+    return {pair.key: pair.value for pair in health.status[0].values}
 
 
-def test_sources_are_topics_or_frames():
-    assert node.frames("/tf:table.tag_7") == ("table", "tag_7") and node.frames("/object/pose") is None
-    with pytest.raises(ValueError, match=r"/tf:parent\.child"):
-        node.frames("/tf:table")
+@pytest.mark.parametrize("model", ["robust", "paper"])
+@pytest.mark.parametrize("delay", [0, 2])
+def test_a_log_played_message_by_message_gives_the_causal_estimates(recorded, monkeypatch, model, delay):
+    log = {name: column[:120] for name, column in stickslip.load_log(recorded / "log.csv").items()}
+    # object poses of the last rows have not arrived at the end
+    seen = {name: column[: 120 - delay] for name, column in log.items()}
+    whole = stickslip.filter(as_carried(seen), recorded / "scene.toml", causal=True, model=model, particles=100, seed=3)
+    parameters = {"particles": 100, "model": model, "seed": 3, "rate": RATE, "lag": delay / RATE}
+    contacts = ["/fixel_1/contact", "/fixel_2/contact"]
+    with Session(monkeypatch, scene=str(recorded / "scene.toml"), contacts=contacts, **parameters) as session:
+        play(session, log, delay)
+    rows = [{name: column[k] for name, column in whole.items()} for k in range(len(whole["time"]))]
+    assert session.warnings == []
+    assert [numbers(message) for message in session.poses] == [expected(row) for row in rows]
+    for message, row in zip(session.health, rows, strict=True):
+        assert pairs(message).items() >= dict(messages.words(row)).items()
+    last = pairs(session.health[-1])
+    assert last["ess"] == f"{whole['ess'][-1]:.6g}" and last["collapses"] == str(whole.collapses)
+    assert (last["late_rows"], last["refused_rows"], last["restarts"]) == ("0", "0", "0")
+    assert last["observed"].split() == [name for name, is_observed in whole.observed.items() if is_observed]
 
 
-def test_a_row_waits_for_the_pusher_and_has_it_where_it_was_then():
-    rows = node.Rows(sensors=0, period=0.04)
-    rows.object(1.0, (0.1, 0.0, 0.0))
-    rows.pusher(0.99, (0.0, 0.0, 3.1))
-    assert rows.take() == []
-    rows.pusher(1.01, (0.02, -0.04, -3.1))
-    [row] = rows.take()
-    assert row["time"] == 1.0 and row["object"] == (0.1, 0.0, 0.0)
-    np.testing.assert_allclose(row["pusher"], (0.01, -0.02, math.pi), atol=1e-12)
-    assert rows.take() == []
+def test_missing_and_late_messages_give_the_estimates_of_a_tracker(recorded, monkeypatch):
+    log = {name: column[:120] for name, column in stickslip.load_log(recorded / "log.csv").items()}
+    draw = np.random.default_rng(5)
+    arrivals = []
+    for k, row in enumerate(stickslip.rows(log)):
+        if draw.random() < 0.8:
+            arrivals.append((k, 0, "/pusher/pose", row["time"], row["pusher"]))
+        if row["object"] and draw.random() < 0.8:
+            arrivals.append((k + draw.choice([0, 1, 4]), 1, "/object/pose", row["time"], row["object"]))
+    scene = recorded / "scene.toml"
+    with Session(monkeypatch, scene=str(scene), particles=100, rate=RATE, lag=0.0) as session:
+        for *_, topic, time, pose in sorted(arrivals):
+            session.pose(topic, time, pose)
+            session.tick()
+    sent = {time: carried(pose) for *_, topic, time, pose in arrivals if topic == "/object/pose"}
+    assert {row["time"]: row["object"] for row in session.rows if row["object"]} == sent
+    # every row goes to a tracker in the order of the node
+    tracker, given, late, latest = stickslip.Tracker(scene, particles=100), [], 0, -math.inf
+    for row in session.rows:
+        given.append(tracker.push(**row))
+        late += row["time"] <= latest
+        latest = max(latest, row["time"])
+    assert late > 10 and pairs(session.health[-1])["late_rows"] == str(late)
+    known = [expected(estimate) for estimate in given if not math.isnan(estimate["x"])]
+    assert [numbers(message) for message in session.poses] == known
+    # a late row changes the estimate at the latest row, which is in /tf already
+    stamps = [planar.seconds(message.header.stamp) for message in session.broadcast]
+    assert stamps == sorted(set(stamps)) and len(stamps) < len(known)
 
 
-def test_a_row_does_not_wait_for_a_pusher_that_is_silent():
-    rows = node.Rows(sensors=0, period=0.04)
-    rows.pusher(0.0, (0.5, 0.0, 0.0))
-    rows.object(0.01, (0.1, 0.0, 0.0))
-    assert rows.take() == []
-    rows.object(0.05, (0.2, 0.0, 0.0))
-    [row] = rows.take()
-    assert (row["time"], row["pusher"]) == (0.01, (0.5, 0.0, 0.0))
+def test_transforms_are_poses(demo, scene, monkeypatch):
+    log = list(stickslip.rows(demo / "log.csv"))[:60]
+    parameters = {"scene": str(demo / "scene.toml"), "particles": 64, "object": "/tf:table.tag", "child_frame": "plate"}
+    with Session(monkeypatch, **parameters) as session:
+        for row in log:
+            if row["object"] is not None:
+                session.transform("table", "tag", row["time"], row["object"])
+            session.pose("/pusher/pose", row["time"], row["pusher"])
+            session.tick()
+    tracker = stickslip.Tracker(scene, particles=64)
+    given = [tracker.push(**row) for row in session.rows]
+    assert session.warnings == [] and len(given) >= 59
+    assert [row["object"] for row in session.rows if row["object"]] == [carried(row["object"]) for row in log]
+    assert [numbers(message) for message in session.poses] == [expected(estimate) for estimate in given]
+    for message, estimate in zip(session.broadcast, given, strict=True):
+        assert (message.header.frame_id, message.child_frame_id) == ("table", "plate")
+        turn = message.transform
+        assert (turn.translation.x, turn.translation.y) == (estimate["x"], estimate["y"])
+        assert 2 * math.atan2(turn.rotation.z, turn.rotation.w) == pytest.approx(estimate["theta"])
 
 
-def test_in_the_dark_rows_have_the_pusher_alone_at_the_rate_of_the_camera():
-    rows, taken = node.Rows(sensors=0, period=0.04), []
-    for k in range(200):
-        time = 0.01 * k
-        rows.pusher(time, (time, 0.0, 0.0))
-        if k % 4 == 0 and not 80 <= k < 160:
-            rows.object(time, (1.0, 0.0, 0.0))
-        taken += rows.take()
-    times = [row["time"] for row in taken]
-    np.testing.assert_allclose(np.diff(times), 0.04, atol=1e-12)
-    dark = [row["time"] for row in taken if row["object"] is None]
-    assert len(dark) == 20 and 0.79 < dark[0] and dark[-1] < 1.6
-    np.testing.assert_allclose([row["pusher"][0] for row in taken], times, atol=1e-12)
+def test_the_node_goes_on_after_a_pause(demo, monkeypatch):
+    log = list(stickslip.rows(demo / "log.csv"))[:30]
+    with Session(monkeypatch, scene=str(demo / "scene.toml"), particles=64, lag=0.0) as session:
+        session.tick()  # no message has come yet
+        for shift in (0.0, 60.0):
+            for row in log:
+                session.pose("/object/pose", row["time"] + shift, row["object"])
+                session.pose("/pusher/pose", row["time"] + shift, row["pusher"])
+                session.tick()
+    # the first row after the pause is refused, since its time may be wrong; the next one restarts the tracker
+    assert len(session.poses) == 59 and len(session.warnings) == 1 and "5 s" in session.warnings[0]
+    last = pairs(session.health[-1])
+    assert (last["refused_rows"], last["restarts"]) == ("1", "1")
+    assert planar.seconds(session.poses[-1].header.stamp) == pytest.approx(log[-1]["time"] + 60, abs=1e-6)
 
 
-def test_a_camera_that_lags_makes_no_dark_rows():
-    rows, taken = node.Rows(sensors=0, period=0.04, lag=0.1), []
-    for k in range(200):
-        time = 0.01 * k
-        rows.pusher(time, (0.0, 0.0, 0.0))
-        if k % 4 == 0 and k >= 10:
-            rows.object(time - 0.1, (1.0, 0.0, 0.0))
-        taken += rows.take()
-    assert len(taken) == 47 and all(row["object"] for row in taken)
+def test_doubts_of_the_tracker_are_a_warning():
+    estimate = dict.fromkeys(["time", "x", "std_x", "ess"], 0.25) | {"d_tri": math.nan}
+
+    class Following:
+        doubts, observed, collapses, late, refused, restarts = (), ["mu_s"], 1, 2, 3, 4
+
+    message = messages.diagnostics(estimate, Following, "table", 1_700_000_000.25)
+    stamp = message.header.stamp
+    assert (message.header.frame_id, stamp.sec, stamp.nanosec) == ("table", 1_700_000_000, 250_000_000)
+    assert (message.status[0].level, message.status[0].message) == (b"\0", "")
+    counts = {"observed": "mu_s", "collapses": "1", "late_rows": "2", "refused_rows": "3", "restarts": "4"}
+    assert pairs(message) == {"std_x": "0.25", "ess": "0.25"} | counts
+    Following.doubts = ("a", "b")
+    message = messages.diagnostics(estimate, Following, "table", 0.9999999999)
+    assert (message.header.stamp.sec, message.header.stamp.nanosec) == (1, 0)
+    assert (message.status[0].level, message.status[0].message) == (b"\1", "a; b")
 
 
-def test_a_stamp_far_ahead_makes_one_row():
-    rows = node.Rows(sensors=0, period=0.04)
-    rows.object(0.0, (1.0, 0.0, 0.0))
-    for time in (0.0, 1e9):
-        rows.pusher(time, (0.0, 0.0, 0.0))
-    assert [row["time"] for row in rows.take()] == [0.0, 1e9]
-
-
-def test_rows_go_on_after_one_wrong_time():
-    rows, taken = node.Rows(sensors=1, period=0.04), []
-    for time in [4e9, 0.0, 0.04, 0.08, 0.12, 0.16, 0.2]:
-        rows.touch(0, time == 0.04)
-        rows.pusher(time, (time, 0.0, 0.0))
-        if time < 0.1 or time == 4e9:
-            rows.object(time, (0.0, 0.0, 0.0))
-        taken += rows.take()
-    times = [row["time"] for row in taken]
-    np.testing.assert_allclose(times, [4e9, 0.0, 0.04, 0.08, 0.12, 0.16], atol=1e-9)
-    assert [row["tactile"] for row in taken] == [[False], [False], [True]] + 3 * [[False]]
-    np.testing.assert_allclose([row["pusher"][0] for row in taken], times, atol=1e-9)
-
-
-def test_touches_count_for_the_row_after_them():
-    rows = node.Rows(sensors=2, period=0.04)
-    rows.touch(1, False)
-    rows.touch(1, True)
-    rows.touch(1, False)
-    read = []
-    for k in range(2):
-        rows.object(0.04 * k, (0.0, 0.0, 0.0))
-        rows.pusher(0.04 * k, (0.0, 0.0, 0.0))
-        read += [row["tactile"] for row in rows.take()]
-    assert read == [[None, True], [None, False]]
-
-
-def test_messages_are_filled():
+def test_a_pose_message_has_the_covariance():
     estimate = {"x": 0.5, "y": -0.25, "theta": 3.0, "std_x": 0.1, "std_y": 0.2, "std_theta": 0.5}
     estimate |= {"cov_x_y": 0.01, "cov_x_theta": -0.02, "cov_y_theta": 0.03}
-    estimate |= {"mu_s": 0.25, "d_tri": math.nan, "ess": 123.0}
-    position, orientation = _place()
-    message = SimpleNamespace(
-        header=SimpleNamespace(frame_id="", stamp=SimpleNamespace(sec=0, nanosec=0)),
-        pose=SimpleNamespace(pose=SimpleNamespace(position=position, orientation=orientation), covariance=np.zeros(36)),
-    )
-    node.fill_header(message.header, "world", 1_700_000_000.25)
-    node.fill_pose(message, estimate)
-    assert (message.header.stamp.sec, message.header.stamp.nanosec) == (1_700_000_000, 250_000_000)
+    message = messages.pose(estimate, "table", 0.0)
+    position, orientation = message.pose.pose.position, message.pose.pose.orientation
     assert (position.x, position.y) == (0.5, -0.25)
     assert 2 * math.atan2(orientation.z, orientation.w) == pytest.approx(3.0)
-    expected = {0: 0.01, 7: 0.04, 35: 0.25, 1: 0.01, 6: 0.01, 5: -0.02, 30: -0.02, 11: 0.03, 31: 0.03}
-    assert {k: v for k, v in enumerate(message.pose.covariance) if v} == pytest.approx(expected)
-    node.fill_header(message.header, "world", 0.9999999999)
-    assert (message.header.stamp.sec, message.header.stamp.nanosec) == (1, 0)
-    assert node.words(estimate) == [("mu_s", "0.25"), ("ess", "123")]
+    covariance = {0: 0.01, 7: 0.04, 35: 0.25, 1: 0.01, 6: 0.01, 5: -0.02, 30: -0.02, 11: 0.03, 31: 0.03}
+    assert {k: v for k, v in enumerate(message.pose.covariance) if v} == pytest.approx(covariance)
 
 
-def test_a_tracker_starts_anew_after_a_pause_and_not_for_one_wrong_time(scene):
-    def row(time):
-        return {"time": time, "object": (0.0, 0.0, 0.0), "pusher": (-0.2, 0.0, 0.0), "tactile": [], "force": None}
-
-    starts = []
-    following = node.Following(lambda: starts.append(1) or stickslip.Tracker(scene, particles=64))
-    following.push(row(0.0))
-    for time in [50.0, math.nan, 100.0]:
-        with pytest.raises(stickslip.Error):
-            following.push(row(time))
-    following.push(row(0.04))
-    assert (len(starts), following.time) == (1, 0.04)
-    with pytest.raises(stickslip.Error):
-        following.push(row(100.0))
-    following.push(row(100.04))
-    assert (len(starts), following.time) == (2, 100.04)
-    following.push(row(100.0))
-    assert following.time == 100.04
-    # a clock that is set back
-    with pytest.raises(stickslip.Error):
-        following.push(row(0.0))
-    following.push(row(0.04))
-    assert (len(starts), following.time) == (3, 0.04)
+def test_a_viewer_that_starts_later_gets_the_scene(demo, scene, monkeypatch):
+    with Session(monkeypatch, scene=str(demo / "scene.toml"), particles=64, child_frame="plate") as session:
+        markers = session.scene()
+    bodies = stickslip.outlines(scene)
+    assert [(marker.ns, marker.id, marker.header.frame_id) for marker in markers] == [
+        *(("object", part, "plate") for part in range(2)),
+        *((f"fixel_{k}", 0, "table") for k in (1, 2, 3)),
+    ]
+    polygons = [*bodies.object, *(part for fixel in bodies.fixels for part in fixel)]
+    for marker, polygon in zip(markers, polygons, strict=True):
+        corners = np.array([(point.x, point.y) for point in marker.points])
+        np.testing.assert_array_equal(corners, [*polygon, polygon[0]])
+        assert marker.frame_locked and (marker.header.stamp.sec, marker.header.stamp.nanosec) == (0, 0)
 
 
-class _Ros:
-    """Modules of ROS that pass messages on, and what was published; ``spin`` runs ``play`` instead of waiting."""
-
-    def __init__(self, monkeypatch, parameters, play):
-        self.subscribed, self.published, self.transforms = {}, defaultdict(list), {}
-        self.warnings = []
-        self.node = MagicMock()
-        self.node.declare_parameter = lambda name, default: SimpleNamespace(value=parameters.get(name, default))
-        self.node.create_subscription = lambda kind, topic, take, qos: self.subscribed.__setitem__(topic, take)
-        self.node.create_publisher = lambda kind, topic, depth: SimpleNamespace(publish=self.published[topic].append)
-        self.node.create_timer = lambda period, tick: setattr(self, "tick", tick)
-        self.node.get_logger().warning = lambda text, **_: self.warnings.append(text)
-        for name in ["diagnostic_msgs.msg", "geometry_msgs.msg", "rclpy.qos", "rclpy.time", "std_msgs.msg"]:
-            monkeypatch.setitem(sys.modules, name, MagicMock())
-        executors = SimpleNamespace(ExternalShutdownException=InterruptedError)
-        monkeypatch.setitem(sys.modules, "rclpy.executors", executors)
-        rclpy, tf2 = MagicMock(), ModuleType("tf2_ros")
-        rclpy.create_node.return_value = self.node
-        rclpy.spin.side_effect = lambda _: play(self)
-        tf2.TransformException = KeyError
-        tf2.Buffer = lambda: SimpleNamespace(lookup_transform=lambda parent, child, _: self.transforms[parent, child])
-        tf2.TransformListener = tf2.TransformBroadcaster = MagicMock()
-        monkeypatch.setitem(sys.modules, "rclpy", rclpy)
-        monkeypatch.setitem(sys.modules, "tf2_ros", tf2)
-        stamped = SimpleNamespace
-        geometry = sys.modules["geometry_msgs.msg"]
-        geometry.PoseWithCovarianceStamped = lambda: stamped(
-            header=stamped(stamp=stamped(sec=0, nanosec=0), frame_id=""),
-            pose=stamped(pose=stamped(position=_place()[0], orientation=_place()[1]), covariance=np.zeros(36)),
-        )
+def test_wrong_parameters_are_refused_and_another_frame_is_reported(demo, monkeypatch):
+    scene = str(demo / "scene.toml")
+    for wrong, rule in [
+        ({"reliability": "fast"}, "`fast`; it must be best_effort or reliable"),
+        ({"depth": 0}, "at least 1"),
+        ({"object": "/tf:table.plate", "child_frame": "plate"}, "its own frame"),
+    ]:
+        with pytest.raises(ValueError, match=rule), Session(monkeypatch, scene=scene, particles=64, **wrong):
+            pass
+    assert quality.of_inputs("best_effort", 7).depth == 7
+    with Session(monkeypatch, scene=scene, particles=64, frame="floor") as session:
+        session.pose("/object/pose", 0.0, (0.0, 0.0, 0.0))
+    assert session.warnings[0].startswith("/object/pose: the frame is `table`, and `frame` is `floor`")
 
 
-def test_the_node_gives_what_the_tracker_gives(demo, scene, monkeypatch):
-    log = [row for row in stickslip.rows(demo / "log.csv")][:120]
-    sensors = len(log[0]["tactile"])
-
-    def play(ros):
-        for row in log:
-            for k, on in enumerate(row["tactile"]):
-                if on is not None:
-                    ros.subscribed[f"/fixel_{k + 1}/contact"](SimpleNamespace(data=on))
-            if row["object"] is not None:
-                ros.transforms["table", "tag"] = _transform(row["time"], *row["object"])
-            ros.subscribed["/pusher/pose"](_pose(row["time"], *row["pusher"]))
-            ros.tick()
-
-    contacts = [f"/fixel_{k + 1}/contact" for k in range(sensors)]
-    parameters = {"scene": str(demo / "scene.toml"), "object": "/tf:table.tag", "particles": 64, "contacts": contacts}
-    ros = _Ros(monkeypatch, parameters, play)
-    node.main()
-
-    tracker, expected = stickslip.Tracker(scene, particles=64), []
-    for row in log:
-        planar = {name: node.planar(*_place(*row[name])) if row[name] else None for name in ("object", "pusher")}
-        estimate = tracker.push(node.seconds(_stamp(row["time"])), **planar, tactile=row["tactile"])
-        expected.append((estimate["x"], estimate["y"], estimate["std_x"] ** 2))
-    given = [(m.pose.pose.position.x, m.pose.pose.position.y, m.pose.covariance[0]) for m in ros.published["~/pose"]]
-    assert ros.warnings == [] and len(given) > 100
-    assert given == expected
-    assert len(ros.published["/diagnostics"]) == len(given)
+def test_the_package_names_its_files_and_parameters():
+    (section,) = yaml.safe_load((PACKAGE / "config/stickslip.yaml").read_text()).values()
+    assert section["ros__parameters"] == PARAMETERS
+    readme = (PACKAGE / "README.md").read_text()
+    assert set(PARAMETERS) <= set(re.findall(r"`(\w+)`", readme))
+    version = tomllib.loads((ROOT / "Cargo.toml").read_text())["workspace"]["package"]["version"]
+    manifest = ElementTree.parse(PACKAGE / "package.xml").getroot()
+    assert (manifest.findtext("name"), manifest.findtext("version")) == ("stickslip_ros", version)
+    setup = (PACKAGE / "setup.py").read_text()
+    assert f'version="{version}"' in setup
+    for path in re.findall(r'"((?:config|launch|resource|rviz)/\S+?)"', setup):
+        assert (PACKAGE / path).is_file(), path
+    layout = yaml.safe_load((PACKAGE / "rviz/stickslip.rviz").read_text())
+    topics = {
+        display["Topic"]["Value"] for display in layout["Visualization Manager"]["Displays"] if "Topic" in display
+    }
+    assert topics == {"/stickslip/pose", "/stickslip/scene"}
 
 
-def test_the_node_goes_on_in_the_dark_with_late_poses_and_after_a_pause(demo, monkeypatch):
-    log = [row for row in stickslip.rows(demo / "log.csv")][:90]
-    counts = []
-
-    def play(ros):
-        def step(row, shift=0.0, sees=True):
-            if sees:
-                ros.subscribed["/object/pose"](_pose(row["time"] + shift, *row["object"]))
-            ros.subscribed["/pusher/pose"](_pose(row["time"] + shift, *row["pusher"]))
-            ros.tick()
-
-        def count():
-            counts.append((len(ros.published["~/pose"]), len(ros.warnings)))
-
-        ros.tick()  # nothing has come yet
-        for row in log[:40]:
-            step(row)
-        count()
-        for row in log[40:60]:
-            step(row, sees=False)
-        count()
-        ros.subscribed["/object/pose"](_pose(log[56]["time"], *log[56]["object"]))
-        ros.tick()
-        count()
-        for row in log[60:]:
-            step(row, shift=60.0)
-        count()
-
-    parameters = {"scene": str(demo / "scene.toml"), "particles": 64, "contacts": [], "lag": 0.0}
-    ros = _Ros(monkeypatch, parameters, play)
-    node.main()
-
-    (seen, _), (dark, _), (late, refused), (again, told) = counts
-    assert seen == 40 and 18 <= dark - seen <= 20
-    # the pose that comes late is answered by the estimate at the latest row
-    stamps = [message.header.stamp.sec + 1e-9 * message.header.stamp.nanosec for message in ros.published["~/pose"]]
-    assert late == dark + 1 and stamps[late - 1] == stamps[dark - 1] and refused == 0
-    # the first row after the pause is refused, since its time may be wrong; the next one begins anew
-    assert again == late + 29 and told == 1 and "5 s" in ros.warnings[0]
-    assert stamps[late] > 60 and math.isclose(stamps[-1], log[-1]["time"] + 60, abs_tol=1e-6)
+@pytest.mark.skipif(ros2_session.IS_STAND_IN, reason="rclpy is not installed: see ros2/stickslip_ros/README.md")
+def test_the_node_reads_the_parameters_file(demo):
+    options = ["--ros-args", "--params-file", str(PACKAGE / "config/stickslip.yaml")]
+    ros2_session.rclpy.init()
+    try:
+        # the command line goes before the file
+        node = StickslipNode(cli_args=[*options, "-p", f"scene:={demo / 'scene.toml'}", "-p", "depth:=7"])
+        given = {name: node.get_parameter(name).value for name in PARAMETERS}
+        node.destroy_node()
+    finally:
+        ros2_session.rclpy.shutdown()
+    assert given == PARAMETERS | {"scene": str(demo / "scene.toml"), "depth": 7}

@@ -1,0 +1,30 @@
+"""Stamps and poses of ROS as times and poses in the plane."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+#: x, y (m) and theta (rad).
+Pose = tuple[float, float, float]
+
+
+def seconds(stamp: Any) -> float:
+    """Returns the time of a ``builtin_interfaces/msg/Time`` (s), correctly rounded."""
+    return float((stamp.sec * 10**9 + stamp.nanosec) / 10**9)
+
+
+def planar(position: Any, orientation: Any) -> Pose:
+    """Returns x, y (m) and the heading of the x-axis (rad) of a pose with an upright z-axis."""
+    x, y, z, w = orientation.x, orientation.y, orientation.z, orientation.w
+    return position.x, position.y, math.atan2(2 * (w * z + x * y), w * w + x * x - y * y - z * z)
+
+
+def frames(source: str) -> tuple[str, str] | None:
+    """Returns parent and child of a source such as ``/tf:table.tag_7``; None for a topic."""
+    if not source.startswith("/tf:"):
+        return None
+    parent, dot, child = source.removeprefix("/tf:").partition(".")
+    if not (parent and dot and child):
+        raise ValueError(f"the source is `{source}`; frames are named as /tf:parent.child")
+    return parent, child

@@ -1,0 +1,124 @@
+"""Rows of a log from messages that arrive asynchronously."""
+
+from __future__ import annotations
+
+import math
+from bisect import bisect_left
+from collections.abc import Sequence
+
+import stickslip
+from stickslip_ros.planar import Pose
+
+#: Longest step back of a clock that is not set back (s).
+PAUSE = 5.0
+
+#: Time for which pusher poses are kept (s).
+KEPT = 2.0
+
+
+def between(track: Sequence[tuple[float, Pose]], time: float) -> Pose | None:
+    """Interpolates the pose at ``time`` (s); the last pose after the track, None before it."""
+    after = bisect_left(track, time, key=lambda entry: entry[0])
+    if after == len(track) or track[after][0] == time:
+        return track[min(after, len(track) - 1)][1] if track else None
+    if after == 0:
+        return None
+    (t0, (x0, y0, a0)), (t1, (x1, y1, a1)) = track[after - 1], track[after]
+    share = (time - t0) / (t1 - t0)
+    turn = math.remainder(a1 - a0, 2 * math.pi)
+    return x0 + share * (x1 - x0), y0 + share * (y1 - y0), a0 + share * turn
+
+
+class Rows:
+    """Rows at the camera's rate.
+
+    A row waits until a pusher pose at its time or later arrives, at most ``period`` (s). A row has
+    the pusher alone if no object pose arrives for one and a half periods plus ``lag`` (s), the
+    delay of the camera's poses after the pusher's of the same time. Such rows also fill the gap
+    before an object pose.
+
+    A touch has no stamp. Its time is that of the newest pusher pose. A sensor reads true if it was
+    true at any time since the previous row.
+    """
+
+    def __init__(self, sensors: int, period: float, lag: float = 0.0) -> None:
+        self._period, self._lag = period, lag
+        self._objects: list[tuple[float, Pose]] = []
+        self._pusher: list[tuple[float, Pose]] = []
+        self._touches: list[tuple[float, int, bool]] = []
+        self._reads: list[bool | None] = [None] * sensors
+        self._latest = -math.inf
+
+    def object(self, time: float, pose: Pose) -> None:
+        """Takes a pose of the object at a time (s)."""
+        self._objects.append((time, pose))
+
+    def pusher(self, time: float, pose: Pose) -> None:
+        """Takes a pose of the pusher at a time (s); ignores it if it is out of order."""
+        if self._passed() - time > PAUSE:
+            # another clock, or one wrong time
+            self._pusher = []
+            self._touches = [(-math.inf, sensor, on) for _, sensor, on in self._touches]
+        if time > self._passed():
+            self._pusher.append((time, pose))
+
+    def touch(self, sensor: int, on: bool) -> None:
+        """Takes a reading of a sensor; sensors are numbered from 0."""
+        self._touches.append((self._passed(), sensor, on))
+
+    def take(self) -> list[stickslip.Row]:
+        """Returns the rows that are complete, each once."""
+        rows = []
+        passed = self._passed()
+        newest = max([passed, *(time for time, _ in self._objects)])
+        waiting = []
+        for time, pose in sorted(self._objects, key=lambda entry: entry[0]):
+            if passed >= time or newest - time >= self._period:
+                rows += self._gap(time, passed)
+                rows.append(self._row(time, pose))
+            else:
+                waiting.append((time, pose))
+        self._objects = waiting
+        while not waiting and -math.inf < self._latest + 1.5 * self._period + self._lag <= passed:
+            # a pause gives one row, which the tracker refuses
+            step = self._period if passed - self._latest < PAUSE else passed - self._latest
+            rows.append(self._row(self._latest + step, None))
+        self._pusher = [entry for entry in self._pusher if entry[0] >= passed - KEPT]
+        return rows
+
+    def _gap(self, time: float, passed: float) -> list[stickslip.Row]:
+        """Returns the rows without an object pose before ``time`` (s).
+
+        They make the rows independent of the times at which rows are taken.
+        """
+        rows = []
+        while 1.5 * self._period <= time - self._latest < PAUSE and self._latest + self._period <= passed:
+            rows.append(self._row(self._latest + self._period, None))
+        return rows
+
+    def _passed(self) -> float:
+        """Returns the time of the newest pusher pose (s)."""
+        return self._pusher[-1][0] if self._pusher else -math.inf
+
+    def _row(self, time: float, pose: Pose | None) -> stickslip.Row:
+        is_set_back = self._latest - time > PAUSE
+        is_late = time <= self._latest and not is_set_back
+        self._latest = time if is_set_back else max(time, self._latest)
+        return {
+            "time": time,
+            "object": pose,
+            "object_covariance": None,
+            "pusher": between(self._pusher, time),
+            # only the object pose of a late row counts
+            "tactile": [None] * len(self._reads) if is_late else self._tactile(time),
+            "force": None,
+        }
+
+    def _tactile(self, time: float) -> list[bool | None]:
+        """Returns the readings over the interval from the previous row to ``time`` (s)."""
+        touched = [False] * len(self._reads)
+        for _, sensor, on in [touch for touch in self._touches if touch[0] <= time]:
+            touched[sensor] |= on
+            self._reads[sensor] = on
+        self._touches = [touch for touch in self._touches if touch[0] > time]
+        return [None if read is None else on or read for on, read in zip(touched, self._reads, strict=True)]
