@@ -126,7 +126,7 @@ impl Report {
 
 /// Writes reproduce.json, the figures and report.html.
 fn write(folder: &Path, report: &Report, run_sets: &[RunSet]) -> Result<()> {
-    let figures = figures(run_sets);
+    let figures = figures(run_sets, ["experiment A", "experiment B"]);
     figures
         .par_iter()
         .try_for_each(|figure| write_figure(folder, figure.name, &figure.drawing))?;

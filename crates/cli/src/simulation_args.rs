@@ -51,6 +51,9 @@ pub struct ReproduceArgs {
     /// Run 106 scenes in the paper's regime, and compare touch with no touch [seeds: 10]
     #[arg(long, conflicts_with = "from_frames")]
     pub pinned: bool,
+    /// Force noise of the paper's model in these scenes, as filter.force_std of a scene
+    #[arg(long, value_name = "SHARE", requires = "pinned", value_parser = share)]
+    pub force_std: Option<f64>,
     /// Track rendered camera frames, instead of poses with the paper's noise
     #[arg(long)]
     pub from_frames: bool,

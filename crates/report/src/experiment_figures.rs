@@ -36,11 +36,11 @@ pub struct Figure {
 impl Figure {
     /// A drawing with its name and caption.
     #[must_use]
-    pub fn new(name: &'static str, drawing: Drawing, caption: &str) -> Self {
+    pub fn new(name: &'static str, drawing: Drawing, caption: impl Into<String>) -> Self {
         Self {
             name,
             drawing,
-            caption: caption.to_owned(),
+            caption: caption.into(),
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Figures 2 to 7 of the paper, ours: [`figures`]. Errors and parameters over all seeds, poses of
+//! Figures 1 to 7 of the paper, ours: [`figures`]. Errors and parameters over all seeds, poses of
 //! the first one.
 
 use stickslip::EstimateRow;
@@ -25,41 +25,65 @@ struct Replicates<'a> {
     run_sets: Vec<&'a RunSet>,
 }
 
-/// Figures 2 to 7.
-pub fn figures(run_sets: &[RunSet]) -> Vec<Figure> {
+/// Figures 1 to 7 from runs on an A and on a B of these names.
+pub fn figures(run_sets: &[RunSet], [name_a, name_b]: [&str; 2]) -> Vec<Figure> {
     let a = Replicates::of(run_sets, PaperExperiment::A);
     let b = Replicates::of(run_sets, PaperExperiment::B);
     let camera_on = [Nominal, ParticleNoTouchCameraOn, KalmanCameraOn];
+    let a_end = a.last_row();
     vec![
+        Figure::new(
+            "fig1",
+            b.rig(),
+            format!(
+                "Figure 1, {name_b}: the rig at the first row. The thumb, on the left, pushes the object into three fixels."
+            ),
+        ),
         Figure::new(
             "fig2",
             a.x_errors(),
-            "Figure 2, experiment A: error of x. a) the camera is always on; b) it turns off.",
+            format!("Figure 2, {name_a}: error of x. a) the camera is always on; b) it turns off."),
         ),
         Figure::new(
             "fig3",
-            a.poses(&[(300, camera_on), (300, [Nominal, ParticleNoTouch, Kalman])]),
-            "Figure 3, experiment A, seed 0: the object at the last row; grey: truth. Above with the camera on, below without.",
+            a.poses(&[
+                (a_end, camera_on),
+                (a_end, [Nominal, ParticleNoTouch, Kalman]),
+            ]),
+            format!(
+                "Figure 3, {name_a}, seed 0: the object at the last row; grey: truth. Above with the camera on, below without."
+            ),
         ),
         Figure::new(
             "fig4",
             a.parameters(ParticleNoTouchCameraOn),
-            "Figure 4, experiment A: friction as the particle filter estimates it, the camera always on; dashed: its own standard deviation.",
+            format!(
+                "Figure 4, {name_a}: friction as the particle filter estimates it, the camera always on; dashed: its own standard deviation."
+            ),
         ),
         Figure::new(
             "fig5",
             b.errors(&[Particle, ParticleNoTouch, Nominal]),
-            "Figure 5, experiment B: errors of x, y and θ; the camera turns off at row 240.",
+            format!(
+                "Figure 5, {name_b}: errors of x, y and θ; the camera turns off before the first fixel."
+            ),
         ),
         Figure::new(
             "fig6",
-            b.poses(&[257, 300].map(|row| (row, [Nominal, ParticleNoTouch, Particle]))),
-            "Figure 6, experiment B, seed 0: the object at the first contact with a fixel (above) and at the last row (below); grey: truth.",
+            b.poses(
+                &[b.first_fixel_contact(), b.last_row()]
+                    .map(|row| (row, [Nominal, ParticleNoTouch, Particle])),
+            ),
+            format!(
+                "Figure 6, {name_b}, seed 0: the object at the first contact with a fixel (above) and at the last row (below); grey: truth."
+            ),
         ),
         Figure::new(
             "fig7",
             b.parameters(Particle),
-            "Figure 7, experiment B: friction as the particle filter with tactile data estimates it; dashed: its own standard deviation.",
+            format!(
+                "Figure 7, {name_b}: friction as the particle filter with tactile data estimates it; dashed: its own standard deviation."
+            ),
         ),
     ]
 }
@@ -75,6 +99,35 @@ impl<'a> Replicates<'a> {
     /// The first seed.
     fn first(&self) -> &'a RunSet {
         self.run_sets[0]
+    }
+
+    /// The last row, at most the paper's 300.
+    fn last_row(&self) -> usize {
+        300.min(self.first().replicate.experiment.log.len() - 1)
+    }
+
+    /// Row of the first contact with a fixel.
+    fn first_fixel_contact(&self) -> usize {
+        let facts = &self.first().replicate.experiment.facts;
+        let contacts = facts.first_fixel_contacts.iter().flatten();
+        contacts.copied().min().unwrap_or_else(|| self.last_row())
+    }
+
+    /// The bodies where they begin.
+    fn rig(&self) -> Drawing {
+        let experiment = &self.first().replicate.experiment;
+        let scene = &experiment.setup.scene;
+        let mut bodies = Body::surroundings(scene, experiment.log.pusher[0].as_ref());
+        let start = Reference::of(experiment).pose[0];
+        bodies.extend(
+            start.map(|pose| Body::new("", &scene.object.shape, &pose, Colour::INK).filled(0.12)),
+        );
+        let overlay = Overlay {
+            bodies,
+            width: 588.0,
+            ..Overlay::default()
+        };
+        overlay.drawing()
     }
 
     /// The median curve of a variant over seeds, from points of each run.

@@ -3,8 +3,13 @@
 use anyhow::Result;
 use rayon::prelude::*;
 use stickslip_evaluation::Variant;
-use stickslip_evaluation::paper::{PaperExperiment, ResultsRow, ResultsTable, RunSet, RunSettings};
-use stickslip_report::{Block, Colour, Figure, Report, ReportedExperiment, Section, Table};
+use stickslip_evaluation::paper::{
+    Cell, PaperExperiment, ResultsRow, ResultsTable, RunSet, RunSettings,
+};
+use stickslip_report::{
+    Block, Colour, Figure, Report, ReportedExperiment, Section, StripGroup, StripLane, StripPlot,
+    Table,
+};
 
 use super::text::{about_occlusions, band, counts, median, occlusions, orders, touch};
 use crate::origin::origin;
@@ -16,6 +21,9 @@ const SUMMARY: [&str; 2] = [
     ". In each grasp a thumb pushes an object against fixed fingers (fixels); the camera turns off before the object touches the first one. \
      Below: the paper's tables with our numbers, its figures, and playbacks of three grasps.",
 ];
+
+/// Caption of the figure of a table.
+const STRIP: &str = "A dot is a seed. Bars are the medians of the seeds.";
 
 /// Rule by which the orders are judged.
 const ORDERS: &str = "Two methods that the paper's table orders, compared seed by seed: median difference ± standard error. \
@@ -58,7 +66,7 @@ pub fn page(made: &super::Report, run_sets: &[RunSet], figures: &[Figure]) -> Re
         .map(|figure| Block::Figure(figure.drawing.clone(), figure.caption.clone()))
         .collect();
     let figures = Section {
-        title: "Figures 2 to 7".to_owned(),
+        title: "Figures 1 to 7".to_owned(),
         blocks: figures,
     };
     let plays = [
@@ -89,9 +97,31 @@ fn table_section(table: &ResultsTable) -> Section {
         .rows
         .iter()
         .map(|row| Block::Table(row_table(row), row.title.to_owned()));
+    let strip = Block::Figure(strip(table).drawing(), STRIP.to_owned());
     Section {
         title: table.name.to_owned(),
-        blocks: blocks.collect(),
+        blocks: [strip].into_iter().chain(blocks).collect(),
+    }
+}
+
+/// Our errors seed by seed, with the paper's number.
+fn strip(table: &ResultsTable) -> StripPlot {
+    let lane = |cell: &Cell| StripLane {
+        name: cell.variant.paper_title().to_owned(),
+        colour: Colour::of(cell.variant),
+        values: cell.seeds_mm.clone(),
+        mark: Some(cell.paper_mm),
+    };
+    let group = |row: &ResultsRow| StripGroup {
+        name: row.title.to_owned(),
+        lanes: row.cells.iter().map(lane).collect(),
+    };
+    StripPlot {
+        label: format!("{}: errors of all seeds, method by method", table.name),
+        x_label: "pose RMSE over all rows (mm)".to_owned(),
+        floor: 0.05,
+        mark_name: "paper".to_owned(),
+        groups: table.rows.iter().map(group).collect(),
     }
 }
 

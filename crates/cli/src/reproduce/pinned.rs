@@ -2,15 +2,21 @@
 
 use std::path::Path;
 
-use anyhow::Result;
+use anyhow::{Result, bail};
 use rayon::prelude::*;
 use serde::Serialize;
 use stickslip_evaluation::paper::{
-    PinnedCell, PinnedExperiment, PinnedGroup, PinnedResults, PinnedRow, PinnedScene, PinnedScores,
+    PinnedCell, PinnedGroup, PinnedResults, PinnedRow, PinnedScene, PinnedScores, Replicate,
+    RunSet, RunSettings,
 };
 use stickslip_evaluation::{Variant, quantile};
-use stickslip_report::{Block, Colour, Report as Page, StripGroup, StripLane, StripPlot, Table};
+use stickslip_report::{
+    Block, Colour, Figure, Report as Page, Section, StripGroup, StripLane, StripPlot, Table,
+};
 
+use super::figures::figures;
+use super::runs;
+use crate::args::ModelName;
 use crate::files::{ready_folder, write_figure, write_file, write_report};
 use crate::origin::origin;
 use crate::output::{show_result, talk};
@@ -20,6 +26,10 @@ use crate::verdict::Verdict;
 
 /// Seeds of the filter where the command line does not say.
 const SEEDS: u64 = 10;
+
+/// Scenes of the paper's figures: one of A, one of B. They were chosen by their results, to show
+/// what the paper's figures show.
+const STORIES: [&str; 2] = ["A-201-000273", "B-202-000157"];
 
 /// Description of the table.
 const ABOUT: &str = "Scenes in which the nominal simulation and the Kalman filter have the paper's errors. Pose RMSE over all rows in mm: \
@@ -37,26 +47,35 @@ struct Report {
     seeds: u64,
     model: &'static str,
     causal: bool,
+    /// Force noise of the paper's model, where the command line gives it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    force_std: Option<f64>,
     #[serde(flatten)]
     results: PinnedResults,
 }
 
 /// Runs the command.
 pub fn pinned(args: &ReproduceArgs) -> Result<Verdict> {
+    if args.force_std.is_some() && args.model != ModelName::Paper {
+        bail!("--force-std is the force noise of --model paper; leave one of the two out");
+    }
     if let Some(folder) = &args.out {
         ready_folder(folder)?;
     }
     let seeds = args.seeds.unwrap_or(SEEDS);
-    let results = args.threads.pool()?.install(|| results(args, seeds))?;
+    let pool = args.threads.pool()?;
+    let results = pool.install(|| results(args, seeds))?;
     let report = Report {
         particles: args.particles,
         seeds,
         model: args.model.name(),
         causal: args.causal,
+        force_std: args.force_std,
         results,
     };
     if let Some(folder) = &args.out {
-        write(folder, &report)?;
+        let stories = pool.install(|| stories(seeds, args.settings()))?;
+        write(folder, &report, &stories)?;
     }
     show_result(args.json, &report, || {
         format!("{ABOUT}\n\n{}", table(&report.results.rows))
@@ -64,10 +83,27 @@ pub fn pinned(args: &ReproduceArgs) -> Result<Verdict> {
     Ok(Verdict::Done)
 }
 
-/// Writes pinned.json, the figure and report.html.
-fn write(folder: &Path, report: &Report) -> Result<()> {
+/// All variants on the scenes of the paper's figures.
+fn stories(seeds: u64, settings: RunSettings) -> Result<Vec<RunSet>> {
+    let mut replicates = Vec::new();
+    for name in STORIES {
+        let first = PinnedScene::named(name).simulate()?;
+        replicates.extend((0..seeds).map(|seed| Replicate {
+            seed,
+            ..first.clone()
+        }));
+    }
+    runs(replicates, settings)
+}
+
+/// Writes pinned.json, the figures and report.html.
+fn write(folder: &Path, report: &Report, stories: &[RunSet]) -> Result<()> {
     let drawing = strip(&report.results).drawing();
     write_figure(folder, "pinned", &drawing)?;
+    let figures = figures(stories, STORIES);
+    for Figure { name, drawing, .. } in &figures {
+        write_figure(folder, name, drawing)?;
+    }
     let json = serde_json::to_string_pretty(report)?;
     write_file(&folder.join("pinned.json"), json.as_bytes())?;
     let page = Page {
@@ -82,11 +118,17 @@ fn write(folder: &Path, report: &Report) -> Result<()> {
             ("particles", report.particles.to_string()),
             ("model", report.model.to_owned()),
         ]),
-        sections: Vec::new(),
+        sections: vec![Section {
+            title: "Figures 1 to 7, in two of the scenes".to_owned(),
+            blocks: figures
+                .into_iter()
+                .map(|figure| Block::Figure(figure.drawing, figure.caption))
+                .collect(),
+        }],
     };
     let page = write_report(folder.join("report.html"), &page)?;
     talk(format_args!(
-        "wrote pinned.svg, pinned.json and {}",
+        "wrote pinned.svg, fig1.svg to fig7.svg, pinned.json and {}",
         page.display()
     ));
     Ok(())
@@ -128,8 +170,10 @@ fn results(args: &ReproduceArgs, seeds: u64) -> Result<PinnedResults> {
     let scenes = PinnedScene::all();
     let progress = bar(scenes.len(), "scenes", Work::Long);
     let score = |scene: &PinnedScene| {
-        let experiment = scene.simulate()?;
-        let scores = scores(scene, &experiment, args, seeds);
+        let mut replicate = scene.simulate()?;
+        let noise = &mut replicate.experiment.setup.filter.force_std;
+        *noise = args.force_std.unwrap_or(*noise);
+        let scores = scores(scene, replicate, args.settings(), seeds);
         progress.inc(1);
         scores
     };
@@ -140,15 +184,16 @@ fn results(args: &ReproduceArgs, seeds: u64) -> Result<PinnedResults> {
 
 fn scores(
     scene: &PinnedScene,
-    experiment: &PinnedExperiment,
-    args: &ReproduceArgs,
+    mut replicate: Replicate,
+    settings: RunSettings,
     seeds: u64,
 ) -> Result<PinnedScores> {
-    let score = |variant, seed| -> Result<f64> {
-        let run = experiment.run(variant, seed, args.settings())?;
+    let mut score = |variant, seed| -> Result<f64> {
+        replicate.seed = seed;
+        let run = replicate.run(variant, settings)?;
         Ok(run.scores.wmse_mm.expect("every row has a truth"))
     };
-    let of = |variant| (0..seeds).map(|seed| score(variant, seed)).collect();
+    let mut of = |variant| (0..seeds).map(|seed| score(variant, seed)).collect();
     let without_touch_mm: Result<Vec<f64>> = of(Variant::ParticleNoTouch);
     let with_touch_mm: Result<Vec<f64>> = of(Variant::Particle);
     Ok(PinnedScores {

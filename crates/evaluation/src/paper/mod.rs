@@ -17,7 +17,7 @@ mod scenes;
 pub use comparison::{CLEAR, Difference, Finding, Measure, PairedComparison};
 pub use noise::{Noise, NoiseLevel};
 pub use pinned_results::{PinnedCell, PinnedResults, PinnedRow, PinnedScores, TouchVerdicts};
-pub use pinned_scene::{PinnedExperiment, PinnedGroup, PinnedScene};
+pub use pinned_scene::{PinnedGroup, PinnedScene};
 pub use published::{PUBLISHED, PublishedRow, PublishedTable};
 pub use replicate::{Replicate, RunSettings};
 pub use results::{

@@ -1,16 +1,13 @@
 //! Scenes in the paper's regime: [`PinnedScene`].
 
 use serde::Deserialize;
-use stickslip::{Occlusion, RunError};
-use stickslip_formats::{Experiment, TruthFacts, read_scene};
+use stickslip_formats::{TruthFacts, read_scene};
 
-use super::replicate::{RATE, RunSettings};
+use super::replicate::{RATE, Replicate};
 use super::scenes::PaperExperiment;
-use crate::run::ScoredRun;
 use crate::simulation::{
     PUSHER_MEMORY, Physics, REPEATS, Simulation, SimulationError, SimulationOptions,
 };
-use crate::variant::Variant;
 
 /// The file of all scenes.
 const SCENES: &str = include_str!("../../scenes/pinned.toml");
@@ -68,15 +65,6 @@ struct Scenes {
     scene: Vec<PinnedScene>,
 }
 
-/// A pinned scene as the testbed simulates it.
-#[derive(Clone, Debug)]
-pub struct PinnedExperiment {
-    /// Setup, log and truth.
-    pub experiment: Experiment,
-    /// Rows without the camera.
-    pub occlusion: Occlusion,
-}
-
 impl PinnedScene {
     /// All scenes, experiment by experiment.
     ///
@@ -88,14 +76,26 @@ impl PinnedScene {
         file.scene
     }
 
-    /// Simulates the scene.
+    /// The scene of this name.
+    ///
+    /// # Panics
+    /// If there is none.
+    #[must_use]
+    pub fn named(name: &str) -> Self {
+        let mut scenes = Self::all().into_iter();
+        scenes
+            .find(|scene| scene.name == name)
+            .unwrap_or_else(|| panic!("no pinned scene is named {name}"))
+    }
+
+    /// Simulates the scene, for filters of seed 0.
     ///
     /// # Errors
     /// The testbed refuses the rig.
     ///
     /// # Panics
     /// If the embedded scene is damaged.
-    pub fn simulate(&self) -> Result<PinnedExperiment, SimulationError> {
+    pub fn simulate(&self) -> Result<Replicate, SimulationError> {
         let setup = read_scene(&self.scene, &self.name).expect("the embedded scene is one");
         let [mu_s, mu_p, mu_f] = self.friction.map(Some);
         let known = TruthFacts {
@@ -113,26 +113,12 @@ impl PinnedScene {
             pusher_memory: PUSHER_MEMORY,
         };
         let simulation = Simulation::run(&setup, &known, &options, &mut |_, _| ())?;
-        Ok(PinnedExperiment {
+        Ok(Replicate {
+            paper: self.group.paper(),
+            seed: 0,
             occlusion: simulation.facts.occlusion(),
             experiment: simulation.into_experiment(setup),
         })
-    }
-}
-
-impl PinnedExperiment {
-    /// Runs a variant with a seed of the filter.
-    ///
-    /// # Errors
-    /// Those of [`stickslip::run`].
-    pub fn run(
-        &self,
-        variant: Variant,
-        seed: u64,
-        settings: RunSettings,
-    ) -> Result<ScoredRun, RunError> {
-        let conditions = settings.conditions(self.occlusion, seed);
-        ScoredRun::new(variant, &self.experiment, &conditions, None)
     }
 }
 
@@ -185,6 +171,8 @@ impl PinnedGroup {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::paper::RunSettings;
+    use crate::variant::Variant;
 
     /// The nominal simulation has the paper's error in the scenes as they are here: the columns by
     /// which they were chosen.
@@ -205,7 +193,7 @@ mod tests {
             let own = scenes.iter().filter(|scene| scene.group == group);
             for scene in own.take(3) {
                 let experiment = scene.simulate().unwrap();
-                let run = experiment.run(Variant::Nominal, 0, settings).unwrap();
+                let run = experiment.run(Variant::Nominal, settings).unwrap();
                 let error = run.scores.wmse_mm.unwrap();
                 assert!(
                     (error / paper_mm - 1.0).abs() < 0.2,

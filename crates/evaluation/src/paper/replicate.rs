@@ -43,7 +43,7 @@ impl RunSettings {
 pub struct Replicate {
     /// The experiment.
     pub paper: PaperExperiment,
-    /// Seed of rig, sensors and filters.
+    /// Seed of the filters; in the paper's scenes that of rig and sensors, too.
     pub seed: u64,
     /// Setup, log and truth of the experiment.
     pub experiment: Experiment,

@@ -28,6 +28,9 @@ pub struct Cell {
     pub paper_mm: f64,
     /// Ours over all rows, as the paper's, over seeds (mm).
     pub wmse_mm: Band,
+    /// The same, seed by seed (mm).
+    #[serde(skip)]
+    pub seeds_mm: Vec<f64>,
     /// Ours over the rows after the occlusion begins (mm).
     pub dark_mm: Band,
     /// Ours over all rows against the camera's own poses, as the paper scores (mm).
@@ -205,6 +208,7 @@ impl AllRuns<'_> {
             method: own.variant.paper_key(),
             paper_mm: own.paper_mm,
             wmse_mm: band(&own.scores(Measure::AllRows)),
+            seeds_mm: own.scores(Measure::AllRows),
             dark_mm: band(&own.scores(Measure::DarkRows)),
             camera_mm: band(&own.scores(Measure::CameraPoses)),
             unsolved: own.runs.iter().map(|run| run.unsolved).sum(),
