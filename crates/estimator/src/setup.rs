@@ -149,10 +149,10 @@ impl Setup {
         self.uncertainty.centre_of_friction > 0.0 || self.uncertainty.tripod_angle > 0.0
     }
 
-    /// Largest distance (m) of a pusher that yielded behind its logged pose: [`PUSHER_SIGMAS`]
-    /// standard deviations of that pose (docs/method.md (13)). A pusher farther behind contradicts
+    /// Largest distance (m) of a pusher that yielded behind its logged pose: three standard
+    /// deviations of that pose (docs/method.md (13)). A pusher farther behind contradicts
     /// the log: it is dragged to that distance.
-    pub(crate) fn most_pusher_lag(&self) -> f64 {
+    pub fn most_pusher_lag(&self) -> f64 {
         PUSHER_SIGMAS * self.camera.map_or(0.0, |camera| camera.pusher_position_std)
     }
 

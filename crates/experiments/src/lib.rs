@@ -8,6 +8,7 @@
 //! - [`recorded_cases`]: recorded experiments, and how they are run.
 //! - [`harvest`]: every step of such a run, judged; [`survey_steps`]: a sample of them as hard
 //!   problems.
+//! - [`PoseNoise`], [`PolygonCone`]: two methods that the paper argues against.
 
 mod calibration;
 mod closed_loop;
@@ -15,6 +16,7 @@ mod harvest;
 mod ingredient;
 mod recorded_case;
 mod reference;
+mod rivals;
 
 pub use calibration::{
     CalibrationOptions, CalibrationRun, Observed, Placed, QUANTITIES, RankTally, Tally, TruthSource,
@@ -27,3 +29,6 @@ pub use harvest::{Harvest, HarvestOptions, HarvestedStep, MOST_PARTICLES, harves
 pub use ingredient::Ingredient;
 pub use recorded_case::{RecordedCase, RecordedError, recorded_cases};
 pub use reference::Agreement;
+pub use rivals::{
+    ConeRollout, Lcp, LemkeEnd, OverlapCount, PolygonCone, PolygonStep, PoseNoise, PoseNoiseRun,
+};

@@ -63,6 +63,11 @@ impl NominalPredictor {
         }
     }
 
+    /// Rows of the log.
+    pub fn rows(&self) -> usize {
+        self.rows
+    }
+
     /// Steps from row to row of the log.
     pub fn schedule(&self) -> &Schedule {
         &self.schedule

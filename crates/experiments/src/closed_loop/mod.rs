@@ -26,7 +26,7 @@ pub use step_judge::{NotedStep, NotedSteps};
 use std::ops::Range;
 
 use rayon::prelude::*;
-use stickslip::{RunError, run_observed};
+use stickslip::{Log, RunError, Setup, run_observed};
 use stickslip_dynamics::Dynamics;
 
 use crate::harvest::MOST_PARTICLES;
@@ -92,6 +92,14 @@ impl ClosedLoop {
             tally: state.tally,
             noted: state.noted,
         })
+    }
+
+    /// Setup of the filter in scene `index`, and the log of its push.
+    #[must_use]
+    pub fn setup_and_log(&self, index: u64) -> (Setup, Log) {
+        let scene = RandomScene::draw(self.seed, index, self.frames, self.particles);
+        let log = record(&scene);
+        (scene.setup, log)
     }
 
     /// Scene `index` in words: friction, drive, noise and how the filter is run.
