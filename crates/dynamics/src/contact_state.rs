@@ -20,6 +20,13 @@ impl<const W: usize> Assembly<W> {
         sum * self.scaling.mass
     }
 
+    /// Impulse (N s) of the table's friction on the object, x and y in the world.
+    #[inline(always)]
+    pub fn support_impulses(&self, p: &Unknowns<W>) -> [Lanes<W>; 2] {
+        let [a, b, c] = &p.feet;
+        [0, 1].map(|axis| (a[axis] + b[axis] + c[axis]) * self.scaling.mass)
+    }
+
     /// Smallest gap (m) to one body after the step; infinite where there is no contact.
     #[inline(always)]
     pub fn gaps(&self, ncp: &Ncp<W>, p: &Unknowns<W>, body: Body) -> Lanes<W> {

@@ -48,6 +48,16 @@ impl<const W: usize> StepWork<W> {
         }
     }
 
+    /// Impulse (N s) of the table's friction on the object in the last step, by lane of a chunk: x
+    /// and y in the world.
+    #[inline(always)]
+    pub fn support_impulses(&self, chunk: usize) -> [Lanes<W>; 2] {
+        if self.by_lane.is_empty() {
+            return self.chunks[chunk].support_impulses(&self.unknowns[chunk]);
+        }
+        [0, 1].map(|axis| self.asked_by_lane(chunk, |work| work.support_impulses(0)[axis]))
+    }
+
     /// Smallest gap (m) between the object and a body at the end of the last step, by its contacts,
     /// by lane of a chunk; infinite where none was near.
     #[inline(always)]

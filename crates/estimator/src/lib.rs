@@ -57,7 +57,7 @@ pub use quantile::quantile;
 pub use range::{Rule, SetupError, Unit};
 pub use row::{Row, RowError};
 pub use run::{Run, run, run_observed};
-pub use setup::{Camera, FilterSettings, Limits, Setup, Tactile};
+pub use setup::{Camera, FilterSettings, ForceSensor, Limits, Setup, Tactile};
 pub use stickslip_dynamics as dynamics;
 pub use stickslip_filter::{keep_threads_awake, useful_threads};
 pub use tracker::{StepSize, Tracker, TrackerOptions};

@@ -186,6 +186,7 @@ fn track_smoothed(
             object: row_at.object,
             covariance: row_at.object_covariance,
             tactile: &row_at.tactile,
+            force: row_at.force,
         };
         let drive = Drive {
             smoothed: true,

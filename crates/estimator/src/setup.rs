@@ -42,6 +42,19 @@ impl Default for Tactile {
     }
 }
 
+/// Sensor of the force of the pusher on the object, `[wrench]` of a scene file (docs/model.md,
+/// "Force").
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ForceSensor {
+    /// Standard deviation of one force, per axis (N).
+    pub force_std: f64,
+    /// Standard deviation of a constant error, per axis (N).
+    pub bias_std: f64,
+    /// Standard deviation of the logarithm of a factor on the table's friction: the sensor's scale,
+    /// and friction that differs from place to place.
+    pub scale_std: f64,
+}
+
 /// Closed interval of physically possible values.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
@@ -126,6 +139,8 @@ pub struct Setup {
     pub camera: Option<Camera>,
     /// The tactile sensors' model (defaults where the scene file has no `[tactile]`).
     pub tactile: Tactile,
+    /// Sensor of the pusher's force; `None`: forces are not used.
+    pub wrench: Option<ForceSensor>,
     /// Filter settings.
     pub filter: FilterSettings,
     /// Uncertainty of the numbers above.

@@ -6,7 +6,7 @@
 use stickslip_dynamics::{Feet, Friction, Scene};
 
 use crate::range::{Rule, SetupError, Unit};
-use crate::setup::{Camera, FilterSettings, Limits, Setup, Tactile};
+use crate::setup::{Camera, FilterSettings, ForceSensor, Limits, Setup, Tactile};
 use crate::uncertainty::Uncertainty;
 
 /// A number with its name, its rule and its unit.
@@ -22,6 +22,7 @@ impl Setup {
         let parts = scene(&self.scene).into_iter().chain(camera);
         let parts = parts
             .chain(tactile(&self.tactile))
+            .chain(self.wrench.iter().flat_map(wrench))
             .chain(filter(&self.filter))
             .chain(uncertainty(&self.uncertainty));
         for (name, value, rule, unit) in parts {
@@ -145,6 +146,29 @@ fn camera(camera: &Camera) -> [Number; 5] {
             camera.pusher_orientation_std,
             NotNegative,
             Unit::Radian,
+        ),
+    ]
+}
+
+fn wrench(wrench: &ForceSensor) -> [Number; 3] {
+    [
+        (
+            "wrench.force_std",
+            wrench.force_std,
+            Rule::Positive,
+            Unit::Newton,
+        ),
+        (
+            "wrench.bias_std",
+            wrench.bias_std,
+            Rule::NotNegative,
+            Unit::Newton,
+        ),
+        (
+            "wrench.scale_std",
+            wrench.scale_std,
+            Rule::NotNegative,
+            Unit::None,
         ),
     ]
 }

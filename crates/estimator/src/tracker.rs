@@ -285,6 +285,7 @@ impl<'o> Tracker<'o> {
                     object,
                     covariance: row.object_covariance,
                     tactile,
+                    force: row.force,
                 };
                 let substeps = &self.substeps;
                 if substeps.is_empty() {

@@ -48,6 +48,12 @@ pub(crate) const COMMANDED: f64 = 0.03;
 /// Rate at which a stuck sensor gets free, and `threshold` changes (1/s).
 pub(crate) const RECOVERY: f64 = 0.5;
 
+/// Relative error of the table's friction, as a pusher's force shows it.
+pub(crate) const FORCE_MODEL: f64 = 0.15;
+
+/// Probability that a force is not the table's friction.
+pub(crate) const FORCE_WRONG: f64 = 0.01;
+
 // A pusher out of sight
 
 /// Gap of the object and an unseen pusher up to which the pusher counts as having reached the

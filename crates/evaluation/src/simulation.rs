@@ -1,10 +1,11 @@
 //! A simulated experiment, as its files would hold it: [`Simulation`].
 
 use stickslip::dynamics::{Body, Friction};
-use stickslip::{Log, Setup};
+use stickslip::{ForceSensor, Log, Setup};
+use stickslip_filter::{Purpose, Streams};
 use stickslip_formats::{Experiment, Truth, TruthFacts};
 use stickslip_testbed::{
-    CameraMeasurement, Model, Rig, TouchSensors, Trace, TrackingCamera, Trial, TrialError,
+    CameraMeasurement, Frame, Model, Rig, TouchSensors, Trace, TrackingCamera, Trial, TrialError,
 };
 
 /// Share of frames that the paper's frame grabber repeats.
@@ -128,7 +129,12 @@ impl Simulation {
         // what is measured of it, and what is true
         let measurements = tracker(setup, options).measure(&trace, options.seed);
         Ok(Self {
-            log: log(&trace, &measurements),
+            log: Log {
+                force: setup
+                    .wrench
+                    .map_or_else(Vec::new, |sensor| forces(&trace, &sensor, options.seed)),
+                ..log(&trace, &measurements)
+            },
             truth: truth(&trace),
             facts: facts(&trace, known, options),
             trace,
@@ -186,6 +192,23 @@ fn log(trace: &Trace, measurements: &[CameraMeasurement]) -> Log {
         force: Vec::new(),
     }
 }
+
+/// The pusher's forces as a sensor with these errors measures them.
+fn forces(trace: &Trace, sensor: &ForceSensor, seed: u64) -> Vec<Option<[f64; 2]>> {
+    let streams = Streams::new(seed).of(Purpose::Measure);
+    let bias = [0, 1].map(|axis| sensor.bias_std * streams.at(0).normal(FORCE_BIAS, axis));
+    let measured = |(k, frame): (usize, &Frame)| {
+        let draw = streams.at(k as u64);
+        let error =
+            |axis: usize| bias[axis] + sensor.force_std * draw.normal(FORCE_NOISE, axis as u32);
+        Some([0, 1].map(|axis| frame.pusher_force[axis] + error(axis)))
+    };
+    trace.frames.iter().enumerate().map(measured).collect()
+}
+
+/// Numbers of the random streams of a force sensor, far from those of touch sensors and camera.
+const FORCE_BIAS: u32 = 1 << 16;
+const FORCE_NOISE: u32 = FORCE_BIAS + 1;
 
 fn truth(trace: &Trace) -> Truth {
     let frames = &trace.frames;

@@ -57,7 +57,7 @@ impl ReportedExperiment<'_> {
         let errors = Figure::new(
             "errors",
             error_curves.drawing(),
-            &format!("Errors against time; smaller ones are drawn at {FLOOR}{shaded}."),
+            format!("Errors against time; smaller ones are drawn at {FLOOR}{shaded}."),
         );
         let poses = Figure::new(
             "poses",

@@ -181,6 +181,7 @@ mod tests {
             camera: None,
             tactile: Tactile::default(),
             filter: FilterSettings::default(),
+            wrench: None,
             uncertainty: Uncertainty::default(),
             start: None,
         }

@@ -114,6 +114,7 @@ mod tests {
             stall_force_assumed: false,
             camera: None,
             tactile: Tactile::default(),
+            wrench: None,
             filter: FilterSettings::default(),
             uncertainty: Uncertainty {
                 friction: Friction::default(),

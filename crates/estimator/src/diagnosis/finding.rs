@@ -45,6 +45,8 @@ pub enum Subject {
     Latency,
     /// The gap between object and pusher while it pushes.
     PushingGap,
+    /// The pusher's force.
+    Force,
     /// Rows at which the particle filter explained nothing.
     Collapses,
     /// One tactile sensor, counted from 1.
@@ -142,6 +144,7 @@ impl fmt::Display for Subject {
             Self::Overlap => "overlap",
             Self::Latency => "latency",
             Self::PushingGap => "pushing gap",
+            Self::Force => "force",
             Self::Collapses => "collapses",
             Self::Sensor(k) => return write!(f, "sensor {k}"),
         })

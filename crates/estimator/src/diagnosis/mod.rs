@@ -10,6 +10,7 @@ mod collapses;
 mod contact;
 mod evidence;
 mod finding;
+mod force;
 mod frame;
 mod jumps;
 mod lasting;
@@ -53,7 +54,7 @@ use crate::setup::Setup;
 /// # let object = Object { mass: 0.5, inertia: 2e-4, shape: object };
 /// # let pusher = Pusher { shape: finger, stall_force: None };
 /// # let scene = Scene { gravity: 9.81, object, feet: Feet::Tripod { angle: 0.0 }, pusher, fixels: vec![], nominal };
-/// # let setup = Setup { scene, stall_force_assumed: false, camera: None, tactile: Default::default(), filter: Default::default(), uncertainty: Default::default(), start: None };
+/// # let setup = Setup { scene, stall_force_assumed: false, camera: None, tactile: Default::default(), wrench: None, filter: Default::default(), uncertainty: Default::default(), start: None };
 /// let in_millimetres = Log {
 ///     time: vec![0.0, 0.1],
 ///     object: vec![Some(Pose::new(40.0, 0.0, 0.0)); 2],
@@ -76,6 +77,7 @@ pub fn diagnose(setup: &Setup, log: &Log) -> Vec<Finding> {
         overlap::check,
         latency::check,
         pushing::check,
+        force::check,
         sensors::check,
     ];
     if findings.iter().any(is_misread) {

@@ -25,8 +25,7 @@ use crate::particle::transition::step_plan::{Drive, ParameterNoise, StepPlan};
 use crate::particle::transition::unseen_pusher::HiddenPusher;
 use crate::pose_clock::PoseClock;
 use crate::setup::{Camera, Setup};
-use crate::tuning::LEAST_MOVED;
-use crate::tuning::TOUCHING;
+use crate::tuning::{LEAST_MOVED, TOUCHING};
 
 /// Measurements of a row.
 #[derive(Clone, Copy, Debug)]
@@ -39,6 +38,8 @@ pub(crate) struct Measured<'a> {
     pub covariance: Option<PoseCovariance>,
     /// Tactile readings that count, one per sensor.
     pub tactile: &'a [Option<bool>],
+    /// Force of the pusher on the object (N).
+    pub force: Option<[f64; 2]>,
 }
 
 /// Options of a contact filter.
@@ -265,6 +266,9 @@ impl<'o> ContactFilter<'o> {
         plan.noise_age = self.noise.age(plan.duration());
         plan.reference = self.reference;
         let scene = &self.filter.model().setup().scene;
+        // near a fixel the force depends on the very pose that is sought in the dark
+        let open = !plan.is_dark() || scene.fixels.is_empty();
+        plan.force = measured.force.filter(|_| open);
         plan.pusher_is_back = false;
         plan.unseen_pusher = match drive.substeps.last().filter(|_| !drive.unseen) {
             Some(last) => {

@@ -8,6 +8,7 @@ use crate::covariance::PoseCovariance;
 use crate::filter_model::FilterModel;
 use crate::particle::estimate::sums::Sums;
 use crate::particle::sensor::camera_likelihood::CameraLikelihood;
+use crate::particle::sensor::force_likelihood::ForceBias;
 use crate::particle::sensor::observation::{Observation, PoseAt};
 use crate::particle::sensor::tactile_likelihood::TactileLikelihood;
 use crate::particle::sensor::touch_channel::TouchChannel;
@@ -46,7 +47,8 @@ impl<'o> ContactModel<'o> {
         start: PoseAt,
         history: usize,
     ) -> Self {
-        let columns = Columns::new(model, setup.scene.fixels.len(), history);
+        let columns = Columns::new(model, setup.scene.fixels.len(), history)
+            .with_force(setup.wrench.is_some());
         Self {
             transition: Transition {
                 dynamics: Dynamics::new(setup.scene.clone()),
@@ -156,6 +158,11 @@ impl<'o> ContactModel<'o> {
         table::draw(*columns, (draw, particle), block, i);
         for k in 0..3 {
             block.column_mut(columns.camera_noise() + k)[i] = 0.0;
+        }
+        if let Some(sensor) = &setup.wrench {
+            let bias = ForceBias::prior(sensor);
+            let bias = bias.numbers().map(|number| number.0[0]);
+            write(block, columns.force_bias(), i, bias.each_ref());
         }
         let sensor = TouchChannel::new(&setup.tactile).start::<1>();
         let sensor = sensor.fields().map(|number| number.0[0]);

@@ -7,6 +7,7 @@ mod contact_mode;
 mod diagnosis;
 mod extended_kalman;
 mod fast_pusher;
+mod force;
 mod friction_parameters;
 mod jam;
 mod known_friction;

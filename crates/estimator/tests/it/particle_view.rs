@@ -101,6 +101,7 @@ fn setup() -> Setup {
         camera: Some(camera),
         tactile: Tactile::default(),
         filter: FilterSettings::default(),
+        wrench: None,
         uncertainty: Uncertainty::default().with_known_feet(),
         start: None,
     }

@@ -65,6 +65,7 @@ fn setup(aside: f64) -> Setup {
         camera: Some(camera),
         tactile: Tactile::default(),
         filter: FilterSettings::default(),
+        wrench: None,
         uncertainty: Uncertainty::default(),
         start: None,
     }

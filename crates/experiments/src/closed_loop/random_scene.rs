@@ -108,6 +108,7 @@ impl RandomScene {
                     ..Tactile::default()
                 },
                 filter: filter_settings(&mut rng, limits),
+                wrench: None,
                 uncertainty: Uncertainty::default(),
                 start: None,
                 scene,

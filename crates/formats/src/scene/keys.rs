@@ -74,7 +74,7 @@ const PLAIN: Unit = Unit::None;
 
 /// Names of all tables with their keys; the first one is the document itself.
 #[rustfmt::skip]
-const TABLES: [(&str, &[Key]); 14] = [
+const TABLES: [(&str, &[Key]); 15] = [
     ("", &[
         number("gravity", MetrePerSecond2, Positive, Required,
             "the gravity that presses the object on the support"),
@@ -89,6 +89,7 @@ const TABLES: [(&str, &[Key]); 14] = [
         of(Table, "camera", Optional,
             "the noise of measured poses").note("Particle and Kalman methods need it."),
         of(Table, "tactile", Optional, "the errors of the touch sensors"),
+        of(Table, "wrench", Optional, "the errors of the sensor of the pusher's force"),
         of(Table, "filter", Optional,
             "the settings of the particle filter")
             .note("--model robust does not use force_std and parameter_std."),
@@ -156,6 +157,15 @@ const TABLES: [(&str, &[Key]); 14] = [
             .note("The sum with false_positive is below 1."),
         number("touch_force", Newton, NotNegative, Or("0.05"),
             "the force at which the sensor switches"),
+    ]),
+    ("wrench", &[
+        number("force_std", Newton, Positive, Required,
+            "the standard deviation of one force of the pusher on the object, per axis"),
+        number("bias_std", Newton, NotNegative, Or("0.1"),
+            "the standard deviation of that sensor's constant error, per axis"),
+        number("scale_std", PLAIN, NotNegative, Or("0.1"),
+            "the standard deviation of ln of the measured force over the table's friction")
+            .note("The sensor's scale, and friction that differs from place to place."),
     ]),
     ("filter", &[
         number("force_std", PLAIN, NotNegative, Or("0.15"),

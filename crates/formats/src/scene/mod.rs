@@ -154,6 +154,11 @@ fn setup(root: &Table<'_>) -> Result<Setup> {
             .map(sensing::tactile)
             .transpose()?
             .unwrap_or_default(),
+        wrench: root
+            .section_if("wrench")?
+            .as_ref()
+            .map(sensing::wrench)
+            .transpose()?,
         filter: root
             .section_if("filter")?
             .as_ref()

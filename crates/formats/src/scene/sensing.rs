@@ -1,7 +1,7 @@
-//! `[camera]`, `[tactile]` and `[filter]`.
+//! `[camera]`, `[tactile]`, `[wrench]` and `[filter]`.
 
 use stickslip::dynamics::Friction;
-use stickslip::{Camera, FilterSettings, Limits, Tactile};
+use stickslip::{Camera, FilterSettings, ForceSensor, Limits, Tactile};
 
 use super::document::Table;
 use super::error::SceneError;
@@ -28,6 +28,21 @@ pub(super) fn tactile(table: &Table<'_>) -> Result<Tactile> {
         touch_force: table.number_or("touch_force", default.touch_force)?,
     })
 }
+
+/// `[wrench]`; the bias defaults to [`BIAS_STD`], the scale to [`SCALE_STD`].
+pub(super) fn wrench(table: &Table<'_>) -> Result<ForceSensor> {
+    Ok(ForceSensor {
+        force_std: table.number("force_std")?,
+        bias_std: table.number_or("bias_std", BIAS_STD)?,
+        scale_std: table.number_or("scale_std", SCALE_STD)?,
+    })
+}
+
+/// Bias of a tared force sensor (N).
+const BIAS_STD: f64 = 0.1;
+
+/// Share by which a table's friction differs from place to place.
+const SCALE_STD: f64 = 0.1;
 
 /// `[filter]`; values that it leaves out are those of `default`.
 pub(super) fn filter(table: &Table<'_>, default: FilterSettings) -> Result<FilterSettings> {

@@ -3,6 +3,7 @@
 pub(crate) mod camera_gate;
 pub(crate) mod camera_likelihood;
 pub(crate) mod camera_noise;
+pub(crate) mod force_likelihood;
 pub(crate) mod observation;
 pub(crate) mod pusher_likelihood;
 pub(crate) mod tactile_likelihood;

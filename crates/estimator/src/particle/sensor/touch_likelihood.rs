@@ -27,6 +27,11 @@ impl Propagation {
             #[inline(always)]
             || self.read_touch(transition, plan, block),
         );
+        on_widest(
+            self.level,
+            #[inline(always)]
+            || self.read_force(transition, plan, block),
+        );
         self.read_pusher(transition, plan, block);
     }
 

@@ -1,6 +1,7 @@
 //! Layout of the particle set: [`Columns`].
 
 use crate::filter_model::FilterModel;
+use crate::particle::sensor::force_likelihood::ForceBias;
 use crate::particle::sensor::touch_channel::BELIEF_LEN;
 use crate::particle::unknown::table::{Name, UNKNOWNS};
 
@@ -49,6 +50,7 @@ pub struct Columns {
     model: FilterModel,
     fixels: usize,
     history: usize,
+    force: bool,
 }
 
 impl Columns {
@@ -86,12 +88,18 @@ impl Columns {
             model,
             fixels,
             history,
+            force: false,
         }
     }
 
     /// The layout with `history` past poses.
     pub fn with_history(self, history: usize) -> Self {
         Self { history, ..self }
+    }
+
+    /// The layout with columns for the errors of a force sensor, or without.
+    pub fn with_force(self, force: bool) -> Self {
+        Self { force, ..self }
     }
 
     /// Configuration of the filter.
@@ -151,15 +159,27 @@ impl Columns {
         self.unknowns() + 1
     }
 
+    /// First column of the [`ForceBias`], where there is a force sensor (robust model).
+    pub fn force_bias(&self) -> usize {
+        self.unknowns() + OTHERS
+    }
+
     /// Belief about sensor `fixel`, the numbers of a
     /// [`SensorBelief`](super::touch_channel::SensorBelief) (robust model).
     pub fn sensor(&self, fixel: usize) -> usize {
-        self.unknowns() + OTHERS + BELIEF_LEN * fixel
+        let force = if self.force { ForceBias::LEN } else { 0 };
+        self.force_bias() + force + BELIEF_LEN * fixel
+    }
+
+    /// Returns true if the layout has an unknown: only a force sensor needs its scale.
+    pub(crate) fn has(&self, name: Name) -> bool {
+        self.force || name != Name::ForceScale
     }
 
     /// First column of an unknown; of one that every fixel has, that of `fixel` (robust model).
     pub(crate) fn unknown(&self, name: Name, fixel: usize) -> usize {
         let before = UNKNOWNS.iter().take_while(|unknown| unknown.name != name);
+        let before = before.filter(|unknown| self.has(unknown.name));
         let before: usize = before.map(|unknown| unknown.numbers).sum();
         self.sensor(self.fixels) + before + OFFSET_LEN * fixel
     }

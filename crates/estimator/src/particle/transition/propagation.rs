@@ -56,20 +56,23 @@ pub struct Propagation {
     pub(crate) foot_offsets: Vec<Pose<Column>>,
     /// Square of the pusher's lag before the step (m²) (robust model).
     pub(crate) lag_before: [Column; CHUNKS],
+    /// Impulse of the table's friction over the step (N s), where a force sensor measures it
+    /// (robust model).
+    pub(crate) support: [[Column; 2]; CHUNKS],
     /// Velocities at which an unseen pusher carries objects along (robust model).
     pub(crate) carried: [Twist<Column>; CHUNKS],
     /// Particles that nothing has come near yet: no force disturbs them (robust model).
     pub(crate) untouched: [Mask<LANES>; CHUNKS],
-    involved: [Involved; CHUNKS],
+    pub(crate) involved: [Involved; CHUNKS],
     pub(crate) normals: [[f64; BLOCK]; 4],
     pub(crate) level: Level,
 }
 
 /// Parts of a step that were involved (Φ) and its outcome, by lane of a chunk.
 #[derive(Clone, Copy, Debug)]
-struct Involved {
-    pusher: Mask<LANES>,
-    fixel: Mask<LANES>,
+pub(crate) struct Involved {
+    pub(crate) pusher: Mask<LANES>,
+    pub(crate) fixel: Mask<LANES>,
     moved: Mask<LANES>,
     unsolved: Mask<LANES>,
     failed: Mask<LANES>,
@@ -110,6 +113,7 @@ impl Default for Propagation {
             fixel_offsets: Vec::new(),
             foot_offsets: Vec::new(),
             lag_before: [Column::ZERO; CHUNKS],
+            support: [[Column::ZERO; 2]; CHUNKS],
             carried: [Twist::default(); CHUNKS],
             untouched: [Mask::splat(false); CHUNKS],
             involved: [Involved::NOTHING; CHUNKS],
@@ -138,6 +142,7 @@ impl Propagation {
         if model == FilterModel::Robust {
             self.draw_unknowns(transition, plan, draw, block);
         }
+        self.support.fill([Column::ZERO; 2]);
         let of_force = draw.before(plan.noise_age);
         for (part, input) in (0..).zip(&plan.substeps) {
             let pair = FORCE_PAIR + 2 * (part / sharing(input.h));
@@ -160,7 +165,10 @@ impl Propagation {
             on_widest(
                 level,
                 #[inline(always)]
-                || self.note_contacts(transition, chunks),
+                || {
+                    self.note_contacts(transition, chunks);
+                    self.add_support(plan, chunks);
+                },
             );
             if let Some(observer) = transition.observer.filter(|o| o.wants_steps()) {
                 self.show(observer, block.len());

@@ -81,6 +81,8 @@ pub struct StepPlan {
     pub seen: Observation,
     /// Tactile readings at the end of the step, one per sensor.
     pub tactile: Vec<Option<bool>>,
+    /// Force of the pusher over the step (N), where it was measured (robust model).
+    pub force: Option<[f64; 2]>,
     /// Values near the estimate, about which sums are taken.
     pub reference: Reference,
 }
@@ -121,6 +123,7 @@ impl StepPlan {
             slot: 0,
             seen: Observation::default(),
             tactile: Vec::new(),
+            force: None,
             reference,
         }
     }

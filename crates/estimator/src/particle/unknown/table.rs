@@ -37,6 +37,8 @@ pub(crate) enum Name {
     Roughness,
     /// ln of the camera's latency (`latency`).
     Latency,
+    /// ln of the factor between the measured force and the table's friction (`wrench.scale_std`).
+    ForceScale,
     /// Displacement and turn of the feet: x, y, angle (`centre_of_friction`, `tripod_angle`).
     Feet,
     /// Offset of a fixel from its position: x, y (`fixel_position`).
@@ -55,11 +57,12 @@ pub(crate) enum Event {
 }
 
 /// The unknowns, in the order of their columns. The fixels' come last, fixel by fixel.
-pub(crate) const UNKNOWNS: [Unknown; 6] = [
+pub(crate) const UNKNOWNS: [Unknown; 7] = [
     unknown(Name::PusherOffset, 2, Event::PusherNear, true),
     unknown(Name::PusherTurn, 1, Event::PusherNear, true),
     unknown(Name::Roughness, 1, Event::PusherNear, false),
     unknown(Name::Latency, 1, Event::PusherNear, true),
+    unknown(Name::ForceScale, 1, Event::Motion, false),
     unknown(Name::Feet, 3, Event::Motion, true),
     unknown(Name::FixelOffset, 2, Event::FixelNear, true),
 ];
@@ -86,7 +89,8 @@ pub(crate) struct Number {
 
 /// Numbers of all unknowns.
 pub(crate) fn numbers(columns: Columns) -> impl Iterator<Item = Number> {
-    UNKNOWNS.into_iter().flat_map(move |of| {
+    let kept = UNKNOWNS.into_iter().filter(move |of| columns.has(of.name));
+    kept.flat_map(move |of| {
         let copies = match of.identified_by {
             Event::FixelNear => columns.fixels(),
             Event::PusherNear | Event::Motion => 1,
@@ -137,7 +141,11 @@ impl Unknown {
         match self.name {
             Name::PusherTurn => setup.pusher_turn() > 0.0,
             Name::Feet => setup.support_is_uncertain(),
-            Name::PusherOffset | Name::Roughness | Name::Latency | Name::FixelOffset => true,
+            Name::PusherOffset
+            | Name::Roughness
+            | Name::Latency
+            | Name::ForceScale
+            | Name::FixelOffset => true,
         }
     }
 }

@@ -54,6 +54,7 @@ pub fn setup(fixels: &[[f64; 2]]) -> Setup {
         }),
         tactile: Tactile::default(),
         filter: FilterSettings::default(),
+        wrench: None,
         uncertainty: Uncertainty::default(),
         start: None,
     }

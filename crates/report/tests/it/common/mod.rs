@@ -55,6 +55,7 @@ pub fn setup() -> Setup {
         camera: None,
         tactile: Tactile::default(),
         filter: FilterSettings::default(),
+        wrench: None,
         uncertainty: Uncertainty::default(),
         start: None,
     }
