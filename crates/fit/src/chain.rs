@@ -1,8 +1,10 @@
-//! Samples of an ensemble: [`Chain`].
+//! Samples of several ensembles: [`Chain`].
 
-/// The walkers of an ensemble, move by move.
+/// The walkers of several independent ensembles, move by move.
 #[derive(Clone, Debug)]
 pub(crate) struct Chain {
+    ensembles: usize,
+    /// Walkers of all ensembles, those of one side by side.
     walkers: usize,
     dimension: usize,
     /// Samples, move by move, walker by walker.
@@ -12,8 +14,9 @@ pub(crate) struct Chain {
 }
 
 impl Chain {
-    pub fn new(walkers: usize, dimension: usize) -> Self {
+    pub fn new(ensembles: usize, walkers: usize, dimension: usize) -> Self {
         Self {
+            ensembles,
             walkers,
             dimension,
             samples: Vec::new(),
@@ -68,34 +71,49 @@ impl Chain {
     }
 
     /// The largest split R̂ of the coordinates (Gelman et al., Bayesian Data Analysis, 3rd ed.,
-    /// 11.4): the halves of every walker's way are compared; 1 where all agree.
+    /// 11.4): the halves of every ensemble's way are compared; 1 where all agree.
     pub fn split_rhat(&self) -> f64 {
-        (0..self.dimension)
-            .map(|k| self.split_rhat_of(k))
-            .fold(1.0, f64::max)
+        let rhat = |[within, between]: [f64; 2]| (1.0 + between / within).sqrt();
+        let of = (0..self.dimension).map(|k| self.variances(k).map_or(f64::INFINITY, rhat));
+        of.fold(1.0, f64::max)
     }
 
-    fn split_rhat_of(&self, coordinate: usize) -> f64 {
+    /// The smallest number of independent samples, over the coordinates, whose mean would scatter
+    /// as those of the halves do.
+    pub fn effective_samples(&self) -> f64 {
+        let groups = (2 * self.ensembles) as f64;
+        let of = (0..self.dimension).map(|k| {
+            self.variances(k).map_or(0.0, |[within, between]| {
+                groups * within / between.max(f64::MIN_POSITIVE)
+            })
+        });
+        of.fold(self.samples.len() as f64, f64::min)
+    }
+
+    /// Variance of a coordinate within the halves of every ensemble's way, and between their means.
+    fn variances(&self, coordinate: usize) -> Option<[f64; 2]> {
         let moves = self.accepted.len();
         let half = moves / 2;
         if half < 2 {
-            return f64::INFINITY;
+            return None;
         }
-        let mut means = Vec::new();
-        let mut variances = Vec::new();
-        for walker in 0..self.walkers {
+        let own = self.walkers / self.ensembles;
+        let (mut means, mut within) = (Vec::new(), 0.0);
+        for ensemble in 0..self.ensembles {
             for first in [0, moves - half] {
-                let at = |step: usize| self.samples[step * self.walkers + walker][coordinate];
-                let values: Vec<f64> = (first..first + half).map(at).collect();
+                let walkers = |step: usize| {
+                    let from = step * self.walkers + ensemble * own;
+                    &self.samples[from..from + own]
+                };
+                let samples = (first..first + half).flat_map(walkers);
+                let values: Vec<f64> = samples.map(|sample| sample[coordinate]).collect();
                 let (mean, variance) = mean_and_variance(&values);
                 means.push(mean);
-                variances.push(variance);
+                within += variance / (2 * self.ensembles) as f64;
             }
         }
-        let within = variances.iter().sum::<f64>() / variances.len() as f64;
         let (_, between) = mean_and_variance(&means);
-        let n = half as f64;
-        ((n - 1.0) / n + between / within.max(f64::MIN_POSITIVE)).sqrt()
+        Some([within.max(f64::MIN_POSITIVE), between])
     }
 
     fn mean_of(&self, of: impl Fn(&[f64]) -> f64) -> f64 {
@@ -110,4 +128,46 @@ fn mean_and_variance(values: &[f64]) -> (f64, f64) {
     let mean = values.iter().sum::<f64>() / n;
     let squares: f64 = values.iter().map(|x| (x - mean) * (x - mean)).sum();
     (mean, squares / (n - 1.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use stickslip_filter::Streams;
+
+    use super::*;
+
+    /// Chains of one walker: AR(1) with this memory per move, about a place of each ensemble.
+    fn chain(memory: f64, places: [f64; 4]) -> Chain {
+        let mut chain = Chain::new(4, 4, 1);
+        let mut at = places.map(|place| vec![place]);
+        for step in 0..4000 {
+            for (k, (x, place)) in at.iter_mut().zip(places).enumerate() {
+                let normal = Streams::new(5).normal(step, k as u32, 0);
+                x[0] = place + memory * (x[0] - place) + (1.0 - memory * memory).sqrt() * normal;
+            }
+            chain.push(&at, 4);
+        }
+        chain
+    }
+
+    #[test]
+    fn split_rhat_tells_ensembles_that_disagree() {
+        assert!(chain(0.5, [0.0; 4]).split_rhat() < 1.01);
+        let apart = chain(0.5, [0.0, 0.0, 0.0, 1.0]).split_rhat();
+        assert!((apart - 1.10_f64).abs() < 0.02, "{apart}");
+    }
+
+    /// A chain with memory a is worth n (1 - a) / (1 + a) independent samples.
+    #[test]
+    fn effective_samples_are_those_of_chains_with_a_memory() {
+        for memory in [0.0, 0.9] {
+            let expected = 16_000.0 * (1.0 - memory) / (1.0 + memory);
+            let found = chain(memory, [0.0; 4]).effective_samples();
+            // seven differences of means know their variance to a factor of about three
+            assert!(
+                (0.3..4.0).contains(&(found / expected)),
+                "{memory}: {found}"
+            );
+        }
+    }
 }

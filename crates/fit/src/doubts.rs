@@ -17,7 +17,7 @@ pub fn doubts(pushes: &[Push], fit: &Fit) -> Vec<String> {
     let unsettled = (!fit.sampling.settled).then(|| {
         let split_rhat = fit.sampling.split_rhat;
         format!(
-            "the chains have not converged (split R-hat {split_rhat:.2}); the spreads are rough"
+            "the chains have not converged (split R-hat {split_rhat:.3}, at most 1.01 is); the scene keeps its spreads"
         )
     });
     pushes.iter().flat_map(of_push).chain(unsettled).collect()

@@ -30,8 +30,8 @@ const SCREENED: usize = 256;
 /// Searches for the optimum.
 const SEARCHES: usize = 4;
 
-/// Split R̂ above which the chains have not settled.
-const SETTLED: f64 = 1.2;
+/// Split R̂ above which the chains have not settled (Vehtari et al. 2021).
+const SETTLED: f64 = 1.01;
 
 /// Samples that stand for the posterior.
 const KEPT_SAMPLES: usize = 512;
@@ -105,7 +105,10 @@ pub struct Sampling {
     pub acceptance: f64,
     /// Largest split R̂ of the parameters and the noise.
     pub split_rhat: f64,
-    /// True if the chains agree (R̂ up to 1.2).
+    /// Independent samples that the chains are worth, of the parameter or noise with the fewest.
+    pub effective_samples: f64,
+    /// True if the chains agree (R̂ up to 1.01). Otherwise spreads are not known, and
+    /// [`Fit::scene_text`] leaves those of the scene.
     pub settled: bool,
     /// Steps without a certified solution in the predictions with the fitted values.
     pub unsolved: u32,
@@ -282,6 +285,7 @@ fn sampling(chain: &Chain, vectors: u64) -> Sampling {
         vectors,
         acceptance: chain.acceptance(),
         split_rhat,
+        effective_samples: chain.effective_samples(),
         settled: split_rhat <= SETTLED,
         unsolved: 0,
     }

@@ -10,7 +10,8 @@ use crate::parameter::Parameter;
 use crate::validation::CrossValidation;
 
 impl Fit {
-    /// A scene file with the fitted values and their spreads in place; a parameter that was not
+    /// A scene file with the fitted values and their spreads in place. Where the chains have not
+    /// converged, the spreads stay as they are. A parameter that was not
     /// learnt stays as it is. So do all if `validation` says that fitting does not pay. Values
     /// without a key of their own (an offset, a scale) are worked into the outlines and feet, and
     /// said in comments on top. `name` is shown in errors.
@@ -39,7 +40,9 @@ impl Fit {
         for fitted in &learnt {
             if let Some([value, spread]) = fitted.parameter.scene_keys() {
                 edit.set(&value, fitted.value);
-                edit.set(&spread, fitted.std / fitted.value);
+                if self.sampling.settled {
+                    edit.set(&spread, fitted.std / fitted.value);
+                }
             }
         }
 
@@ -65,10 +68,11 @@ impl Fit {
             edit.set_feet(positions, loads);
             // given feet would be known exactly
             let unknown = |key| ["uncertainty", key];
-            edit.set(
-                &unknown("centre_of_friction"),
-                self.spread_of_centre(&setup),
-            );
+            let spread = match self.sampling.settled {
+                true => self.spread_of_centre(&setup),
+                false => setup.uncertainty.centre_of_friction,
+            };
+            edit.set(&unknown("centre_of_friction"), spread);
             edit.set(&unknown("tripod_angle"), setup.uncertainty.tripod_angle);
         }
         if let (Some(camera), true) = (setup.camera, is(|p| p == Parameter::Latency)) {
@@ -111,6 +115,10 @@ impl Fit {
                 counted(self.pushes as u64, "push")
             ));
             lines.extend(learnt.into_iter().map(value));
+        }
+        if !self.sampling.settled {
+            lines
+                .push("the chains have not converged: the spreads are those before the fit".into());
         }
         if !left.is_empty() {
             let names: Vec<&str> = left.iter().map(|fitted| fitted.name).collect();

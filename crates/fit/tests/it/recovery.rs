@@ -64,8 +64,10 @@ fn friction_of_another_physics_is_found_nearly() {
             "{name} {truth} {fit:?}"
         );
         let constant = fitted.constant.unwrap();
+        // one rig in ten is outside, and one in two hundred beyond twice the half-width
+        let half_width = libm::log(constant.high_90 / constant.value);
         assert!(
-            (constant.low_90..=constant.high_90).contains(&truth),
+            libm::log(truth / constant.value).abs() < 2.0 * half_width,
             "{name} {truth} {constant:?}"
         );
     }
