@@ -42,8 +42,8 @@ impl Default for Tactile {
     }
 }
 
-/// Sensor of the force of the pusher on the object, `[wrench]` of a scene file (docs/model.md,
-/// "Force").
+/// Sensor of the force of the pusher on the object, `[wrench]` of a scene file (docs/model.md
+/// (49)).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ForceSensor {
     /// Standard deviation of one force, per axis (N).
@@ -133,7 +133,7 @@ impl FilterSettings {
 pub struct Setup {
     /// Bodies and nominal friction.
     pub scene: Scene,
-    /// True if the pusher's stall force is [`ASSUMED_STALL`], because the scene gives none.
+    /// True if the pusher's stall force is [`ASSUMED_STALL`](crate::ASSUMED_STALL), because the scene gives none.
     pub stall_force_assumed: bool,
     /// The camera; needed by the particle and Kalman methods only.
     pub camera: Option<Camera>,

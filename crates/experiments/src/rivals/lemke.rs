@@ -182,8 +182,8 @@ mod tests {
 
     use super::*;
 
-    /// Solves the augmented rows (A, b) of A x = b by elimination, the largest pivot of each column first;
-    /// `None` where A is singular.
+    /// Solves the augmented rows (A, b) of A x = b by elimination, the largest pivot of each column
+    /// first; `None` where A is singular.
     fn solved(mut rows: Vec<Vec<f64>>) -> Option<Vec<f64>> {
         let n = rows.len();
         for k in 0..n {

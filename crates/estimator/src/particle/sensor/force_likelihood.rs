@@ -1,4 +1,4 @@
-//! Likelihood of the pusher's force in the robust model (docs/model.md (46)).
+//! Likelihood of the pusher's force in the robust model (docs/model.md (49)).
 
 use stickslip_dynamics::Lanes;
 use stickslip_filter::BlockMut;

@@ -56,8 +56,7 @@ pub struct Propagation {
     pub(crate) foot_offsets: Vec<Pose<Column>>,
     /// Square of the pusher's lag before the step (m²) (robust model).
     pub(crate) lag_before: [Column; CHUNKS],
-    /// Impulse of the table's friction over the step (N s), where a force sensor measures it
-    /// (robust model).
+    /// Impulse of the table's friction over the step (N s), with a force sensor (robust model).
     pub(crate) support: [[Column; 2]; CHUNKS],
     /// Velocities at which an unseen pusher carries objects along (robust model).
     pub(crate) carried: [Twist<Column>; CHUNKS],
