@@ -15,7 +15,12 @@ ros2_stand_in.install()
 
 import rclpy  # noqa: E402
 from diagnostic_msgs.msg import DiagnosticArray  # noqa: E402
-from geometry_msgs.msg import PoseStamped, PoseWithCovarianceStamped, TransformStamped  # noqa: E402
+from geometry_msgs.msg import (  # noqa: E402
+    PoseStamped,
+    PoseWithCovarianceStamped,
+    TransformStamped,
+    WrenchStamped,
+)
 from rclpy.executors import SingleThreadedExecutor  # noqa: E402
 from rclpy.node import Node  # noqa: E402
 from rclpy.parameter import Parameter  # noqa: E402
@@ -51,6 +56,10 @@ class CountedRows(Rows):
     def touch(self, *arguments):
         super().touch(*arguments)
         self.messages["touch"] += 1
+
+    def force(self, *arguments):
+        super().force(*arguments)
+        self.messages["force"] += 1
 
     def take(self):
         rows = super().take()
@@ -122,6 +131,13 @@ class Session:
         message = Bool()
         message.data = on
         self._send(topic, message, "touch")
+
+    def force(self, topic, stamp, force, frame="table"):
+        """Sends a force."""
+        message = WrenchStamped()
+        fill_header(message.header, frame, stamp)
+        message.wrench.force.x, message.wrench.force.y, message.wrench.force.z = force
+        self._send(topic, message, "force")
 
     def tick(self):
         """Lets the node take its rows, and receives its estimates."""

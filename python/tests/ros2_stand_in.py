@@ -130,6 +130,8 @@ def _install_messages() -> None:
     quaternion = _kind("Quaternion", x=float, y=float, z=float, w=lambda: 1.0)
     pose = _kind("Pose", position=point, orientation=quaternion)
     covariance = _kind("PoseWithCovariance", pose=pose, covariance=lambda: np.zeros(36))
+    vector = _kind("Vector3", x=float, y=float, z=float)
+    wrench = _kind("Wrench", force=vector, torque=vector)
     transform = _kind("Transform", translation=point, rotation=quaternion)
     colour = _kind("ColorRGBA", r=float, g=float, b=float, a=float)
     levels = {"OK": b"\0", "WARN": b"\1"}
@@ -147,6 +149,7 @@ def _install_messages() -> None:
         PoseStamped=_kind("PoseStamped", header=header, pose=pose),
         PoseWithCovarianceStamped=_kind("PoseWithCovarianceStamped", header=header, pose=covariance),
         TransformStamped=_kind("TransformStamped", header=header, child_frame_id=str, transform=transform),
+        WrenchStamped=_kind("WrenchStamped", header=header, wrench=wrench),
     )
     _module("std_msgs.msg", Bool=_kind("Bool", data=bool))
     _module(

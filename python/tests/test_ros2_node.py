@@ -164,6 +164,20 @@ def test_transforms_are_poses(demo, scene, monkeypatch):
         assert 2 * math.atan2(turn.rotation.z, turn.rotation.w) == pytest.approx(estimate["theta"])
 
 
+def test_forces_are_turned_and_reach_the_tracker(demo, monkeypatch):
+    with Session(monkeypatch, scene=str(demo / "scene.toml"), frame="table", rate=RATE, wrench="/wrench") as session:
+        session.pose("/object/pose", 1.0, (0.0, 0.0, 0.0))
+        session.force("/wrench", 1.0, (1.0, 2.0, 0.0))
+        session.transform("table", "wrist", 1.0, (0.0, 0.0, math.pi / 2))
+        session.pose("/pusher/pose", 1.0, (-0.1, 0.0, 0.0))
+        session.pose("/object/pose", 1.0 + 1 / RATE, (0.0, 0.0, 0.0))
+        session.force("/wrench", 1.0 + 1 / RATE, (1.0, 2.0, 0.0), frame="wrist")
+        session.pose("/pusher/pose", 1.0 + 1 / RATE, (-0.1, 0.0, 0.0))
+        session.tick()
+        assert session.rows[0]["force"] == (1.0, 2.0)
+        np.testing.assert_allclose(session.rows[1]["force"], (-2.0, 1.0), atol=1e-12)
+
+
 def test_the_node_goes_on_after_a_pause(demo, monkeypatch):
     log = list(stickslip.rows(demo / "log.csv"))[:30]
     with Session(monkeypatch, scene=str(demo / "scene.toml"), particles=64, lag=0.0) as session:

@@ -142,6 +142,24 @@ def test_rows_go_on_after_one_wrong_time():
     np.testing.assert_allclose([row["pusher"][0] for row in taken], times, atol=1e-9)
 
 
+def test_a_row_has_the_mean_force_since_the_row_before():
+    rows = Rows(sensors=0, period=0.04)
+    for k in range(3):
+        rows.object(1.0 + 0.04 * k, (0.1, 0.0, 0.0))
+    for time, force in [(0.99, 1.0), (1.0, 3.0), (1.01, 5.0), (1.04, 6.0), (1.09, 9.0)]:
+        rows.force(time, (force, -force))
+    rows.pusher(1.2, (0.0, 0.0, 0.0))
+    assert [row["force"] for row in rows.take()[:3]] == [(2.0, -2.0), (5.5, -5.5), None]
+
+
+def test_a_force_is_turned_into_the_plane():
+    # a sensor whose z-axis points along y of the table, and its x-axis along x
+    half = math.sqrt(0.5)
+    orientation = SimpleNamespace(x=-half, y=0.0, z=0.0, w=half)
+    force = SimpleNamespace(x=1.0, y=2.0, z=3.0)
+    np.testing.assert_allclose(planar.turned(force, orientation), (1.0, 3.0), atol=1e-12)
+
+
 def test_touches_count_for_the_row_after_them():
     rows = Rows(sensors=2, period=0.04)
     rows.touch(1, False)

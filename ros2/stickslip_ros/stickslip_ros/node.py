@@ -13,7 +13,7 @@ from typing import Any
 import rclpy
 import tf2_ros
 from diagnostic_msgs.msg import DiagnosticArray
-from geometry_msgs.msg import PoseStamped, PoseWithCovarianceStamped
+from geometry_msgs.msg import PoseStamped, PoseWithCovarianceStamped, WrenchStamped
 from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from rclpy.time import Time
@@ -23,7 +23,7 @@ from visualization_msgs.msg import MarkerArray
 import stickslip
 from stickslip_ros import markers, messages, quality
 from stickslip_ros.following import Following
-from stickslip_ros.planar import Pose, frames, planar, seconds
+from stickslip_ros.planar import Pose, frames, planar, seconds, turned
 from stickslip_ros.rows import Rows
 from stickslip_ros.transforms import Transforms
 
@@ -33,6 +33,7 @@ PARAMETERS = {
     "object": "/object/pose",
     "pusher": "/pusher/pose",
     "contacts": [""],
+    "wrench": "",
     "reliability": "best_effort",
     "depth": 50,
     "frame": "world",
@@ -75,6 +76,8 @@ class StickslipNode(Node):
         self._listen(given["pusher"], self._rows.pusher)
         for sensor, topic in enumerate(contacts):
             self._listen_to_touch(sensor, topic)
+        if given["wrench"]:
+            self._listen_to_force(given["wrench"])
 
         # twice the camera's rate, so that a complete row waits at most half a period
         self.create_timer(0.5 / given["rate"], self.tick)
@@ -124,6 +127,22 @@ class StickslipNode(Node):
             self._rows.touch(sensor, message.data)
 
         self.create_subscription(Bool, topic, on_touch, self._inputs)
+
+    def _listen_to_force(self, topic: str) -> None:
+        def on_wrench(message: WrenchStamped) -> None:
+            force, found = message.wrench.force, message.header.frame_id
+            if found in ("", self._frame):
+                self._rows.force(seconds(message.header.stamp), (force.x, force.y))
+                return
+            try:
+                place = self._buffer.lookup_transform(self._frame, found, Time())
+            except tf2_ros.TransformException as error:
+                text = f"{topic}: a force in the frame `{found}` is left out: {error}"
+                self.get_logger().warning(text, throttle_duration_sec=10.0)
+                return
+            self._rows.force(seconds(message.header.stamp), turned(force, place.transform.rotation))
+
+        self.create_subscription(WrenchStamped, topic, on_wrench, self._inputs)
 
     def _publish(self, estimate: dict[str, float], time: float) -> None:
         self._poses.publish(messages.pose(estimate, self._frame, time))

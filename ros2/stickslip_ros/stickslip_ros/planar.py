@@ -8,6 +8,9 @@ from typing import Any
 #: x, y (m) and theta (rad).
 Pose = tuple[float, float, float]
 
+#: x, y (N).
+Force = tuple[float, float]
+
 
 def seconds(stamp: Any) -> float:
     """Returns the time of a ``builtin_interfaces/msg/Time`` (s), correctly rounded."""
@@ -18,6 +21,15 @@ def planar(position: Any, orientation: Any) -> Pose:
     """Returns x, y (m) and the heading of the x-axis (rad) of a pose with an upright z-axis."""
     x, y, z, w = orientation.x, orientation.y, orientation.z, orientation.w
     return position.x, position.y, math.atan2(2 * (w * z + x * y), w * w + x * x - y * y - z * z)
+
+
+def turned(force: Any, orientation: Any) -> Force:
+    """Returns x, y (N) of a force in the frame in which its own frame has this orientation."""
+    x, y, z, w = orientation.x, orientation.y, orientation.z, orientation.w
+    return (
+        (1 - 2 * (y * y + z * z)) * force.x + 2 * (x * y - w * z) * force.y + 2 * (x * z + w * y) * force.z,
+        2 * (x * y + w * z) * force.x + (1 - 2 * (x * x + z * z)) * force.y + 2 * (y * z - w * x) * force.z,
+    )
 
 
 def frames(source: str) -> tuple[str, str] | None:

@@ -7,7 +7,7 @@ from bisect import bisect_left
 from collections.abc import Sequence
 
 import stickslip
-from stickslip_ros.planar import Pose
+from stickslip_ros.planar import Force, Pose
 
 #: Longest step back of a clock that is not set back (s).
 PAUSE = 5.0
@@ -37,6 +37,8 @@ class Rows:
     delay of the camera's poses after the pusher's of the same time. Such rows also fill the gap
     before an object pose.
 
+    The force of a row is the mean since the previous row.
+
     A touch has no stamp. Its time is that of the newest pusher pose. A sensor reads true if it was
     true at any time since the previous row.
     """
@@ -45,6 +47,7 @@ class Rows:
         self._period, self._lag = period, lag
         self._objects: list[tuple[float, Pose]] = []
         self._pusher: list[tuple[float, Pose]] = []
+        self._forces: list[tuple[float, Force]] = []
         self._touches: list[tuple[float, int, bool]] = []
         self._reads: list[bool | None] = [None] * sensors
         self._latest = -math.inf
@@ -61,6 +64,10 @@ class Rows:
             self._touches = [(-math.inf, sensor, on) for _, sensor, on in self._touches]
         if time > self._passed():
             self._pusher.append((time, pose))
+
+    def force(self, time: float, force: Force) -> None:
+        """Takes a force of the pusher on the object at a time (s)."""
+        self._forces.append((time, force))
 
     def touch(self, sensor: int, on: bool) -> None:
         """Takes a reading of a sensor; sensors are numbered from 0."""
@@ -103,16 +110,25 @@ class Rows:
     def _row(self, time: float, pose: Pose | None) -> stickslip.Row:
         is_set_back = self._latest - time > PAUSE
         is_late = time <= self._latest and not is_set_back
+        before = -math.inf if is_set_back else self._latest
         self._latest = time if is_set_back else max(time, self._latest)
+        # only the object pose of a late row counts
         return {
             "time": time,
             "object": pose,
             "object_covariance": None,
             "pusher": between(self._pusher, time),
-            # only the object pose of a late row counts
             "tactile": [None] * len(self._reads) if is_late else self._tactile(time),
-            "force": None,
+            "force": None if is_late else self._force(before, time),
         }
+
+    def _force(self, before: float, time: float) -> Force | None:
+        """Returns the mean force from the previous row, at ``before``, to ``time`` (s)."""
+        own = [force for stamp, force in self._forces if before < stamp <= time]
+        self._forces = [entry for entry in self._forces if time < entry[0] <= time + PAUSE]
+        if not own:
+            return None
+        return sum(x for x, _ in own) / len(own), sum(y for _, y in own) / len(own)
 
     def _tactile(self, time: float) -> list[bool | None]:
         """Returns the readings over the interval from the previous row to ``time`` (s)."""
