@@ -15,7 +15,8 @@ use crate::particle::sensor::touch_channel::{DrawnSensor, TouchChannel, touch_pr
 use crate::particle::set::observer::{Observer, SolvedStep};
 use crate::particle::set::view::ParticleView;
 use crate::run::run_observed;
-use crate::setup::{Camera, Setup};
+use crate::setup::{Camera, ForceSensor, Setup};
+use crate::tuning::FORCE_MODEL;
 
 /// One experiment drawn from the particle filter's prior (docs/model.md).
 ///
@@ -63,7 +64,8 @@ impl PriorSample {
         let first = log.object.iter().position(Option::is_some);
         let first = first.ok_or(RunError::NoObjectPose { rows: log.len() })?;
 
-        // the motion
+        // the motion, which no force weighs
+        let has_force = !std::mem::take(&mut log.force).is_empty();
         let options = RunOptions {
             model,
             particles: 1,
@@ -93,6 +95,9 @@ impl PriorSample {
             streams,
         };
         readings.write(&rows, &mut log);
+        if let Some(sensor) = setup.wrench.filter(|_| has_force) {
+            log.force = readings.forces(&sensor, &rows, log.len());
+        }
         Ok(Self {
             log,
             truth: rows.into_iter().map(|row| row.truth).collect(),
@@ -121,6 +126,8 @@ struct Witnessed {
     shown: Pose,
     /// Probability that each sensor feels a contact.
     touch: Vec<f64>,
+    /// Force of the pusher as (49) predicts it (N), the scale included; `None` where it does not.
+    force: Option<[f64; 2]>,
 }
 
 /// Observer that records the states of a single particle.
@@ -136,6 +143,40 @@ struct WitnessState {
     rows: Vec<Witnessed>,
     /// Impulse and gap of each fixel in the latest step, in the units of [`touch_probability`].
     contacts: Vec<(f64, f64)>,
+    /// Since the latest row: time (s), impulse of the table's friction (N s), whether the pusher
+    /// and a fixel pressed.
+    duration: f64,
+    support: [f64; 2],
+    pushed: bool,
+    held: bool,
+}
+
+impl WitnessState {
+    /// Adds a step to what happened since the latest row.
+    fn add(&mut self, step: &SolvedStep<'_>) {
+        self.duration += step.problem.h;
+        for foot in step.solution.feet {
+            self.support[0] += foot[0];
+            self.support[1] += foot[1];
+        }
+        for (body, normal) in step.bodies.iter().zip(&step.solution.normal) {
+            match body {
+                Body::Pusher => self.pushed |= *normal > 0.0,
+                Body::Fixel(_) => self.held |= *normal > 0.0,
+            }
+        }
+    }
+
+    /// Force of the pusher since the latest row, which ends here.
+    fn force(&mut self) -> Option<[f64; 2]> {
+        let (duration, pushed, held) = (self.duration, self.pushed, self.held);
+        let force = std::mem::take(&mut self.support).map(|impulse| -impulse / duration);
+        (self.duration, self.pushed, self.held) = (0.0, false, false);
+        match pushed {
+            false => Some([0.0; 2]),
+            true => (!held).then_some(force),
+        }
+    }
 }
 
 impl<'a> Witness<'a> {
@@ -175,7 +216,9 @@ impl Observer for Witness<'_> {
     fn on_step(&self, step: &SolvedStep<'_>) {
         let fixels = 0..self.setup.scene.fixels.len();
         let contacts = fixels.map(|j| self.contact(step, j)).collect();
-        self.state.lock().expect("one thread").contacts = contacts;
+        let mut state = self.state.lock().expect("one thread");
+        state.contacts = contacts;
+        state.add(step);
     }
 
     fn on_row(&self, _: usize, particles: &ParticleView<'_>) {
@@ -189,6 +232,9 @@ impl Observer for Witness<'_> {
             FilterModel::Paper => f64::from(u8::from(particles.touches_fixel(0, j))),
         });
         let touch = touch.collect();
+        let scale = particles.force_scale(0).zip(self.setup.wrench);
+        let factor = scale.map_or(1.0, |(z, sensor)| libm::exp(z * sensor.scale_std));
+        let force = state.force().map(|force| force.map(|x| x * factor));
         let row = Witnessed {
             truth: SampledState {
                 pose: particles.pose(0),
@@ -196,6 +242,7 @@ impl Observer for Witness<'_> {
             },
             shown: particles.shown_pose(0),
             touch,
+            force,
         };
         state.rows.push(row);
     }
@@ -241,6 +288,29 @@ impl Readings<'_> {
         }
     }
 
+    /// Draws the forces that a sensor measures, row by row; none before the first row.
+    fn forces(
+        &self,
+        sensor: &ForceSensor,
+        rows: &[Witnessed],
+        len: usize,
+    ) -> Vec<Option<[f64; 2]>> {
+        let bias = [0, 1].map(|axis| sensor.bias_std * self.streams.normal(0, FORCE_BIAS, axis));
+        let measured = |(k, row): (usize, &Witnessed)| {
+            let force = row.force?;
+            let size = libm::hypot(force[0], force[1]);
+            let std = sensor.force_std.hypot(FORCE_MODEL * size);
+            Some([0, 1].map(|axis| {
+                let normal = self.streams.normal(k as u64, FORCE_NOISE, axis as u32);
+                force[axis] + bias[axis] + std * normal
+            }))
+        };
+        let unseen = std::iter::repeat_n(None, len - rows.len());
+        unseen
+            .chain(rows.iter().enumerate().map(measured))
+            .collect()
+    }
+
     /// Draws the readings of sensor `j`, row by row.
     fn read_touch<'r>(
         &self,
@@ -275,3 +345,5 @@ impl Readings<'_> {
 /// Particle numbers of the random streams. Number 0 draws the errors of the camera's poses.
 const NOISE_LEVELS: u32 = 1;
 const FIRST_SENSOR: u32 = 3;
+const FORCE_BIAS: u32 = 1 << 16;
+const FORCE_NOISE: u32 = FORCE_BIAS + 1;

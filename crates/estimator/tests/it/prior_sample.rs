@@ -7,8 +7,8 @@ use std::sync::Mutex;
 use crate::common::{log, setup};
 use stickslip::dynamics::Pose;
 use stickslip::{
-    FilterModel, Log, Observer, ParticleView, PriorSample, RunOptions, Setup, SolvedStep, Tactile,
-    run_observed,
+    FilterModel, ForceSensor, Log, Observer, ParticleView, PriorSample, RunOptions, SampledState,
+    Setup, SolvedStep, Tactile, run_observed,
 };
 
 /// Experiments that are drawn.
@@ -31,18 +31,35 @@ fn push() -> Log {
     log
 }
 
-fn samples(setup: &Setup) -> Vec<PriorSample> {
-    let draw =
-        |seed| PriorSample::draw(setup, &push(), FilterModel::Robust, seed).expect("a sample");
+fn samples(setup: &Setup, log: &Log) -> Vec<PriorSample> {
+    let draw = |seed| PriorSample::draw(setup, log, FilterModel::Robust, seed).expect("a sample");
     (0..SAMPLES).map(draw).collect()
 }
 
-/// Weight of the particles below the true x, y and θ at one row.
+/// Weight of the particles below the true x, y, θ and μ_s at one row.
 #[derive(Debug)]
 struct Ranks {
     row: usize,
-    truth: Pose,
-    ranks: Mutex<[f64; 3]>,
+    truth: SampledState,
+    ranks: Mutex<[f64; 4]>,
+}
+
+impl Ranks {
+    /// The ranks at one row of a run on a sample.
+    fn of(setup: &Setup, sample: &PriorSample, row: usize, seed: u64) -> [f64; 4] {
+        let ranks = Self {
+            row,
+            truth: sample.truth[row],
+            ranks: Mutex::default(),
+        };
+        let options = RunOptions {
+            particles: 256,
+            seed,
+            ..RunOptions::default()
+        };
+        run_observed(setup, &sample.log, &options, &ranks, &mut |_| ()).expect("a run");
+        ranks.ranks.into_inner().expect("one thread")
+    }
 }
 
 impl Observer for Ranks {
@@ -52,16 +69,13 @@ impl Observer for Ranks {
         if row != self.row {
             return;
         }
-        let mut ranks = [0.0; 3];
+        let numbers = |pose: Pose, mu_s: f64| [pose.x, pose.y, pose.theta, mu_s];
+        let truth = numbers(self.truth.pose, self.truth.friction.mu_s);
+        let mut ranks = [0.0; 4];
         for (i, weight) in particles.weights().iter().enumerate() {
-            let pose = particles.pose(i);
-            for (k, (value, truth)) in pose
-                .fields()
-                .into_iter()
-                .zip(self.truth.fields())
-                .enumerate()
-            {
-                ranks[k] += if value < truth { *weight } else { 0.0 };
+            let values = numbers(particles.pose(i), particles.friction(i).mu_s);
+            for (rank, (value, truth)) in ranks.iter_mut().zip(values.iter().zip(truth)) {
+                *rank += if *value < truth { *weight } else { 0.0 };
             }
         }
         *self.ranks.lock().expect("one thread") = ranks;
@@ -72,25 +86,39 @@ impl Observer for Ranks {
 fn beliefs_of_where_an_object_waits_hold_what_they_say() {
     let (setup, row) = (scene(), 25);
     let mut held = [0_u32; 3];
-    for (seed, sample) in samples(&setup).iter().enumerate() {
-        let ranks = Ranks {
-            row,
-            truth: sample.truth[row].pose,
-            ranks: Mutex::default(),
-        };
-        let options = RunOptions {
-            particles: 256,
-            seed: seed as u64 + 1000,
-            ..RunOptions::default()
-        };
-        run_observed(&setup, &sample.log, &options, &ranks, &mut |_| ()).expect("a run");
-        let ranks = ranks.ranks.into_inner().expect("one thread");
+    for (seed, sample) in (1000..).zip(samples(&setup, &push())) {
+        let ranks = Ranks::of(&setup, &sample, row, seed);
         for (held, rank) in held.iter_mut().zip(ranks) {
             *held += u32::from((0.05..=0.95).contains(&rank));
         }
     }
     // 90 % of 100, whose standard deviation is 3
     assert!(held.iter().all(|held| (80..=99).contains(held)), "{held:?}");
+}
+
+/// A push over the open table with a force sensor, from 1.25 s on.
+#[test]
+fn beliefs_of_the_tables_friction_hold_what_they_say() {
+    let mut setup = setup(&[]);
+    setup.filter.likelihood_scale = 1.0;
+    setup.wrench = Some(ForceSensor {
+        force_std: 0.03,
+        bias_std: 0.1,
+        scale_std: 0.1,
+    });
+    let mut log = push();
+    log.tactile.clear();
+    log.force = vec![Some([0.0; 2]); log.time.len()];
+    let (mut held, mut below) = (0_u32, 0_u32);
+    for (seed, sample) in (1000..).zip(samples(&setup, &log)) {
+        assert!(sample.log.force[80].is_some_and(|[x, _]| x > 0.3));
+        let [.., rank] = Ranks::of(&setup, &sample, 80, seed);
+        held += u32::from((0.05..=0.95).contains(&rank));
+        below += u32::from(rank < 0.5);
+    }
+    // 90 and 50 % of 100, whose standard deviations are 3 and 5
+    assert!((80..=99).contains(&held), "{held}");
+    assert!((35..=65).contains(&below), "{below}");
 }
 
 #[test]
@@ -140,7 +168,7 @@ fn a_truth_is_drawn_around_the_first_pose_which_stays() {
 #[test]
 fn friction_drawn_has_its_prior_s_distribution_to_the_end() {
     let setup = scene();
-    let drawn = samples(&setup).into_iter().map(|sample| {
+    let drawn = samples(&setup, &push()).into_iter().map(|sample| {
         let last = sample.truth.last().expect("rows").friction;
         libm::log(last.mu_p / setup.scene.nominal.mu_p) / setup.uncertainty.friction.mu_p
     });
@@ -167,7 +195,7 @@ fn sensors_that_never_err_read_what_is_touched() {
         ..scene()
     };
     let (mut free, mut pressed) = (0, 0);
-    for sample in samples(&setup) {
+    for sample in samples(&setup, &push()) {
         for (truth, reading) in sample.truth.iter().zip(&sample.log.tactile[0]) {
             // 30 mm and 5 mm of radius; offsets and outline are some tenths of a millimetre
             let gap = (0.06 - truth.pose.x).hypot(truth.pose.y) - 0.035;

@@ -7,6 +7,7 @@ use crate::particle::model::ContactModel;
 use crate::particle::sensor::observation::Observation;
 use crate::particle::set::chunk::{LANES, is_set};
 use crate::particle::set::columns::Columns;
+use crate::particle::unknown::table::Name;
 
 /// Particles with their weights, read-only.
 #[derive(Clone, Copy, Debug)]
@@ -85,6 +86,15 @@ impl<'a> ParticleView<'a> {
         let camera = self.model.camera_likelihood();
         let shown = camera.shown(self.observation, &block, i / LANES);
         shown.map(|column| column.0[i % LANES])
+    }
+
+    /// ln of the factor between the measured force and the table's friction, according to one
+    /// particle, in its prior's standard deviations; `None` without a force sensor.
+    pub(crate) fn force_scale(&self, particle: usize) -> Option<f64> {
+        let columns = self.model.columns();
+        let column = columns.unknown(Name::ForceScale, 0);
+        let known = columns.has(Name::ForceScale);
+        known.then(|| self.particles.value(particle, column))
     }
 
     /// Returns true if the pusher moved in the step to the row.
