@@ -82,7 +82,9 @@ def main():
     scenes = tomllib.loads(SCENES.read_text())["scene"]
     with ThreadPoolExecutor(given.jobs) as pool:
         results = list(pool.map(lambda pinned: both(given.program, pinned, given.physics), scenes))
-    print(f"{'':16}{'mu_s prior':>11}{'estimate':>10}{'covers':>9}{'observed':>12}{'pose median':>13}{'90 %':>7}{'mean':>7}")
+    print(
+        f"{'':16}{'mu_s prior':>11}{'estimate':>10}{'covers':>9}{'observed':>12}{'pose median':>13}{'90 %':>7}{'mean':>7}"
+    )
     for name, runs in zip(("without force", "with force"), zip(*results, strict=True), strict=True):
         priors, errors, stds, poses = zip(*runs, strict=True)
         covers = statistics.mean(abs(error) < Z90 * std for error, std in zip(errors, stds, strict=True))
