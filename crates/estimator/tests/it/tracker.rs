@@ -6,12 +6,19 @@ use std::num::NonZero;
 use crate::common::{log, setup};
 use stickslip::dynamics::Pose;
 use stickslip::{
-    Camera, Estimate, Log, Row, RowError, RunOptions, Setup, Tracker, TrackerOptions, Tracking, run,
+    Camera, Estimate, ForceSensor, Log, Row, RowError, RunOptions, Setup, Tracker, TrackerOptions,
+    Tracking, run,
 };
 
-/// A push into a fixel with gaps: object poses missing, the pusher lost for short and for long.
+/// A push into a fixel with gaps: object poses missing, the pusher lost for short and for long,
+/// forces missing.
 fn push() -> (Setup, Log) {
-    let setup = setup(&[[0.075, 0.01]]);
+    let mut setup = setup(&[[0.075, 0.01]]);
+    setup.wrench = Some(ForceSensor {
+        force_std: 0.03,
+        bias_std: 0.1,
+        scale_std: 0.1,
+    });
     let lost = |t: f64, from: f64, to: f64| (from..to).contains(&t);
     let object = |t: f64| {
         (t > 0.1 && !lost(t, 1.0, 1.6)).then(|| Pose::new(0.02 * (t - 0.4).max(0.0), 0.0, 0.0))
@@ -22,6 +29,9 @@ fn push() -> (Setup, Log) {
     let mut log = log(90, object, pusher);
     let reading = |row: usize| (!row.is_multiple_of(7)).then_some(row > 60);
     log.tactile = vec![(0..90).map(reading).collect()];
+    let force =
+        |row: usize| (!row.is_multiple_of(5)).then_some([if row > 12 { 1.4 } else { 0.05 }, 0.1]);
+    log.force = (0..90).map(force).collect();
     (setup, log)
 }
 
