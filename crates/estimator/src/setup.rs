@@ -133,7 +133,8 @@ impl FilterSettings {
 pub struct Setup {
     /// Bodies and nominal friction.
     pub scene: Scene,
-    /// True if the pusher's stall force is [`ASSUMED_STALL`](crate::ASSUMED_STALL), because the scene gives none.
+    /// True if the pusher's stall force is [`ASSUMED_STALL`](crate::ASSUMED_STALL), because the
+    /// scene gives none.
     pub stall_force_assumed: bool,
     /// The camera; needed by the particle and Kalman methods only.
     pub camera: Option<Camera>,

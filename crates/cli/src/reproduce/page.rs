@@ -61,14 +61,7 @@ pub fn page(made: &super::Report, run_sets: &[RunSet], figures: &[Figure]) -> Re
         .chain(counts(results));
     summary.extend(sentences.map(Block::Text));
     let tables = results.tables.iter().map(table_section);
-    let figures = figures
-        .iter()
-        .map(|figure| Block::Figure(figure.drawing.clone(), figure.caption.clone()))
-        .collect();
-    let figures = Section {
-        title: "Figures 1 to 7".to_owned(),
-        blocks: figures,
-    };
+    let figures = figures_section("Figures 1 to 7", figures);
     let plays = [
         PaperExperiment::B,
         PaperExperiment::A,
@@ -116,12 +109,27 @@ fn strip(table: &ResultsTable) -> StripPlot {
         name: row.title.to_owned(),
         lanes: row.cells.iter().map(lane).collect(),
     };
+    let label = format!("{}: errors of all seeds, method by method", table.name);
+    paper_strip(label, table.rows.iter().map(group).collect())
+}
+
+/// Errors over all rows with the paper's number as a mark.
+pub fn paper_strip(label: String, groups: Vec<StripGroup>) -> StripPlot {
     StripPlot {
-        label: format!("{}: errors of all seeds, method by method", table.name),
+        label,
         x_label: "pose RMSE over all rows (mm)".to_owned(),
         floor: 0.05,
         mark_name: "paper".to_owned(),
-        groups: table.rows.iter().map(group).collect(),
+        groups,
+    }
+}
+
+/// Figures one below the other.
+pub fn figures_section(title: &str, figures: &[Figure]) -> Section {
+    let block = |figure: &Figure| Block::Figure(figure.drawing.clone(), figure.caption.clone());
+    Section {
+        title: title.to_owned(),
+        blocks: figures.iter().map(block).collect(),
     }
 }
 

@@ -11,10 +11,11 @@ use stickslip_evaluation::paper::{
 };
 use stickslip_evaluation::{Variant, quantile};
 use stickslip_report::{
-    Block, Colour, Figure, Report as Page, Section, StripGroup, StripLane, StripPlot, Table,
+    Block, Colour, Figure, Report as Page, StripGroup, StripLane, StripPlot, Table,
 };
 
 use super::figures::figures;
+use super::page::{figures_section, paper_strip};
 use super::runs;
 use crate::args::ModelName;
 use crate::files::{ready_folder, write_figure, write_file, write_report};
@@ -74,7 +75,7 @@ pub fn pinned(args: &ReproduceArgs) -> Result<Verdict> {
         results,
     };
     if let Some(folder) = &args.out {
-        let stories = pool.install(|| stories(seeds, args.settings()))?;
+        let stories = pool.install(|| stories(args, seeds))?;
         write(folder, &report, &stories)?;
     }
     show_result(args.json, &report, || {
@@ -83,17 +84,25 @@ pub fn pinned(args: &ReproduceArgs) -> Result<Verdict> {
     Ok(Verdict::Done)
 }
 
+/// A scene as the testbed simulates it, with the force noise of the command line.
+fn simulated(scene: &PinnedScene, args: &ReproduceArgs) -> Result<Replicate> {
+    let mut replicate = scene.simulate()?;
+    let noise = &mut replicate.experiment.setup.filter.force_std;
+    *noise = args.force_std.unwrap_or(*noise);
+    Ok(replicate)
+}
+
 /// All variants on the scenes of the paper's figures.
-fn stories(seeds: u64, settings: RunSettings) -> Result<Vec<RunSet>> {
+fn stories(args: &ReproduceArgs, seeds: u64) -> Result<Vec<RunSet>> {
     let mut replicates = Vec::new();
     for name in STORIES {
-        let first = PinnedScene::named(name).simulate()?;
+        let first = simulated(&PinnedScene::named(name), args)?;
         replicates.extend((0..seeds).map(|seed| Replicate {
             seed,
             ..first.clone()
         }));
     }
-    runs(replicates, settings)
+    runs(replicates, args.settings())
 }
 
 /// Writes pinned.json, the figures and report.html.
@@ -118,13 +127,10 @@ fn write(folder: &Path, report: &Report, stories: &[RunSet]) -> Result<()> {
             ("particles", report.particles.to_string()),
             ("model", report.model.to_owned()),
         ]),
-        sections: vec![Section {
-            title: "Figures 1 to 7, in two of the scenes".to_owned(),
-            blocks: figures
-                .into_iter()
-                .map(|figure| Block::Figure(figure.drawing, figure.caption))
-                .collect(),
-        }],
+        sections: vec![figures_section(
+            "Figures 1 to 7, in two of the scenes",
+            &figures,
+        )],
     };
     let page = write_report(folder.join("report.html"), &page)?;
     talk(format_args!(
@@ -157,22 +163,15 @@ fn strip(results: &PinnedResults) -> StripPlot {
             }),
         ],
     };
-    StripPlot {
-        label: "errors of all scenes without and with touch, experiment by experiment".to_owned(),
-        x_label: "pose RMSE over all rows (mm)".to_owned(),
-        floor: 0.05,
-        mark_name: "paper".to_owned(),
-        groups: PinnedGroup::ALL.map(group).into(),
-    }
+    let label = "errors of all scenes without and with touch, experiment by experiment";
+    paper_strip(label.to_owned(), PinnedGroup::ALL.map(group).into())
 }
 
 fn results(args: &ReproduceArgs, seeds: u64) -> Result<PinnedResults> {
     let scenes = PinnedScene::all();
     let progress = bar(scenes.len(), "scenes", Work::Long);
     let score = |scene: &PinnedScene| {
-        let mut replicate = scene.simulate()?;
-        let noise = &mut replicate.experiment.setup.filter.force_std;
-        *noise = args.force_std.unwrap_or(*noise);
+        let replicate = simulated(scene, args)?;
         let scores = scores(scene, replicate, args.settings(), seeds);
         progress.inc(1);
         scores

@@ -28,7 +28,10 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
     };
     let mut findings = Vec::new();
     findings.extend(tare(evidence, &sensor));
-    findings.extend(direction(evidence).or_else(|| friction(evidence, &sensor)));
+    let forces = pushing(evidence);
+    if forces.len() >= FEWEST {
+        findings.push(direction(&forces).unwrap_or_else(|| friction(evidence, &forces, &sensor)));
+    }
     if findings.is_empty() {
         findings.push(Finding::ok(
             Subject::Force,
@@ -81,11 +84,7 @@ fn pushing(evidence: &Evidence<'_>) -> Vec<(f64, f64)> {
 }
 
 /// A force that does not point where the pusher goes.
-fn direction(evidence: &Evidence<'_>) -> Option<Finding> {
-    let forces = pushing(evidence);
-    if forces.len() < FEWEST {
-        return None;
-    }
+fn direction(forces: &[(f64, f64)]) -> Option<Finding> {
     let cosine = median(forces.iter().map(|(size, along)| along / size.max(1e-12)));
     let angle = libm::acos(cosine.clamp(-1.0, 1.0)).to_degrees();
     let found =
@@ -106,11 +105,7 @@ fn direction(evidence: &Evidence<'_>) -> Option<Finding> {
 }
 
 /// The friction that the force shows, against the scene's.
-fn friction(evidence: &Evidence<'_>, sensor: &ForceSensor) -> Option<Finding> {
-    let forces = pushing(evidence);
-    if forces.len() < FEWEST {
-        return None;
-    }
+fn friction(evidence: &Evidence<'_>, forces: &[(f64, f64)], sensor: &ForceSensor) -> Finding {
     let (scene, unsure) = (&evidence.setup.scene, &evidence.setup.uncertainty);
     let size = median(forces.iter().map(|(size, _)| *size));
     let shown = size / (scene.object.mass * scene.gravity);
@@ -119,12 +114,12 @@ fn friction(evidence: &Evidence<'_>, sensor: &ForceSensor) -> Option<Finding> {
         "force over weight {shown:.2} while the object moves, and support.friction {stated:.2}"
     );
     let most = EXPECTED * unsure.friction.mu_s.hypot(sensor.scale_std);
-    Some(match libm::log(shown / stated).abs() > most {
+    match libm::log(shown / stated).abs() > most {
         false => Finding::ok(Subject::Force, found),
         true => Finding::warning(
             Subject::Force,
             found,
             "check the unit of the force, object.mass and support.friction",
         ),
-    })
+    }
 }

@@ -265,10 +265,12 @@ impl<'o> ContactFilter<'o> {
         };
         plan.noise_age = self.noise.age(plan.duration());
         plan.reference = self.reference;
-        let scene = &self.filter.model().setup().scene;
+        let setup = self.filter.model().setup();
+        let scene = &setup.scene;
         // near a fixel the force depends on the very pose that is sought in the dark
         let open = !plan.is_dark() || scene.fixels.is_empty();
-        plan.force = measured.force.filter(|_| open);
+        let counts = open && setup.wrench.is_some() && model == FilterModel::Robust;
+        plan.force = measured.force.filter(|_| counts);
         plan.pusher_is_back = false;
         plan.unseen_pusher = match drive.substeps.last().filter(|_| !drive.unseen) {
             Some(last) => {

@@ -91,7 +91,7 @@ fn a_bias_does_not_count_as_friction() {
     let (found, _) = mu_s(&setup, &log);
     assert!((found / MU_S - 1.0).abs() < 0.12, "{found}");
 
-    // believed to be tared
+    // as if it were tared
     setup.wrench = Some(ForceSensor {
         bias_std: 0.0,
         ..sensor()

@@ -203,15 +203,18 @@ impl AllRuns<'_> {
             runs: self.runs(paper, *variant).collect(),
         };
         let runs: Vec<SeedRuns<'_>> = row.cells.iter().map(runs).collect();
-        let cell = |own: &SeedRuns<'_>| Cell {
-            variant: own.variant,
-            method: own.variant.paper_key(),
-            paper_mm: own.paper_mm,
-            wmse_mm: band(&own.scores(Measure::AllRows)),
-            seeds_mm: own.scores(Measure::AllRows),
-            dark_mm: band(&own.scores(Measure::DarkRows)),
-            camera_mm: band(&own.scores(Measure::CameraPoses)),
-            unsolved: own.runs.iter().map(|run| run.unsolved).sum(),
+        let cell = |own: &SeedRuns<'_>| {
+            let seeds_mm = own.scores(Measure::AllRows);
+            Cell {
+                variant: own.variant,
+                method: own.variant.paper_key(),
+                paper_mm: own.paper_mm,
+                wmse_mm: band(&seeds_mm),
+                seeds_mm,
+                dark_mm: band(&own.scores(Measure::DarkRows)),
+                camera_mm: band(&own.scores(Measure::CameraPoses)),
+                unsolved: own.runs.iter().map(|run| run.unsolved).sum(),
+            }
         };
         ResultsRow {
             title: row.title,

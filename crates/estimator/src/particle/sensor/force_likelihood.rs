@@ -100,13 +100,14 @@ impl Propagation {
         // a share of the measured size: a share of the particle's would favour small forces
         let of_model = FORCE_MODEL * FORCE_MODEL * size * size;
         let other = other_density(size, noise, sliding);
+        let rate = 1.0 / plan.duration();
         for chunk in 0..block.len().div_ceil(LANES) {
             let mut bias = ForceBias::prior(&sensor);
             load_columns(block, columns.force_bias(), chunk, bias.numbers_mut());
 
             // the table's friction, where the pusher alone moves the object
             let involved = &self.involved[chunk];
-            let friction = squared(self.support[chunk]).sqrt() * (1.0 / plan.duration());
+            let friction = squared(self.support[chunk]).sqrt() * rate;
             let mut scale = Lanes::ZERO;
             let column = columns.unknown(Name::ForceScale, 0);
             load_columns(block, column, chunk, [&mut scale]);
