@@ -43,6 +43,9 @@ class Scene:
     def name(self) -> str:
         """Name shown in errors."""
     @property
+    def fingers(self) -> int:
+        """Number of the other fingers of a hand, besides the pusher."""
+    @property
     def fixels(self) -> int:
         """Number of fixels."""
     @property

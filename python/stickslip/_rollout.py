@@ -49,8 +49,9 @@ def rollout(
 
     ``states``: start of the object, (N, 6): x, y (m), theta (rad), vx, vy (m/s), omega (rad/s), or
     (N, 3): poses at rest. ``pusher``: commanded poses at the ends of steps, (N, T + 1, 3), or
-    (T + 1, 3) for all: x, y (m), theta (rad). The pusher moves straight between them, and yields if
-    the scene has a stall force. ``friction``: ``mu_s``, ``mu_p``, ``mu_f``, ``d_tri`` (m), each a
+    (T + 1, 3) for all: x, y (m), theta (rad); for a hand, those of the other fingers follow, (N, T +
+    1, 3 F) with F fingers. The pusher moves straight between them, and yields if the scene has a
+    stall force. ``friction``: ``mu_s``, ``mu_p``, ``mu_f``, ``d_tri`` (m), each a
     number or (N,); the scene's values by default. ``out``: a rollout of the same shape, whose poses
     and twists are overwritten. ``progress``: gets the finished trajectories and all trajectories.
 
@@ -70,10 +71,11 @@ def rollout(
     pushers = numbers(pusher, "pusher")
     if pushers.ndim == 2:
         pushers = pushers[np.newaxis]
-    if pushers.ndim != 3 or pushers.shape[2] != 3 or len(pushers) not in (1, count) or pushers.shape[1] < 2:
+    width = 3 * (1 + scene.fingers)
+    if pushers.ndim != 3 or pushers.shape[2] != width or len(pushers) not in (1, count) or pushers.shape[1] < 2:
         raise Error(
-            f"pusher has the shape {np.shape(pusher)}; it must be ({count}, T + 1, 3), or (T + 1, 3) for all, "
-            "with T at least 1"
+            f"pusher has the shape {np.shape(pusher)}; it must be ({count}, T + 1, {width}), or (T + 1, {width}) for "
+            "all, with T at least 1"
         )
     shape = (count, pushers.shape[1], 3)
     pose, twist = (np.empty(shape), np.empty(shape)) if out is None else _overwritten(out, shape, start, pushers)

@@ -36,7 +36,9 @@ class Row(TypedDict):
     object_covariance: Sequence[float] | None
     #: Pose of the pusher (m, m, rad).
     pusher: Sequence[float] | None
-    #: Tactile readings of the fixels, 0 or 1, over the interval that ends at this row.
+    #: Poses of the other fingers of a hand, one per ``[[finger]]``.
+    fingers: Sequence[Sequence[float] | None]
+    #: Tactile readings of the fixels, then of the fingers of a hand, 0 or 1, over the interval that ends at this row.
     tactile: Sequence[bool | int | None]
     #: Force of the pusher on the object, world frame (N).
     force: Sequence[float] | None
@@ -85,12 +87,14 @@ class Tracker:
         tactile: Sequence[bool | int | None] = (),
         force: Sequence[float] | None = None,
         object_covariance: Sequence[float] | None = None,
+        fingers: Sequence[Sequence[float] | None] = (),
     ) -> dict[str, float]:
         """Takes the measurements at ``time`` (s); None and masked values are missing.
 
         ``object``, ``pusher``: poses (m, m, rad). ``tactile``: readings 0 or 1, sensor k on fixel
         k. ``force``: force of the pusher on the object (N). ``object_covariance``: variances of x,
-        y and theta, then covariances of x with y, x with theta and y with theta.
+        y and theta, then covariances of x with y, x with theta and y with theta. ``fingers``: poses
+        of the other fingers of a hand, one per ``[[finger]]``.
 
         Returns the estimate at the latest row, with the names of ``estimate.csv`` (see
         :func:`stickslip.filter`); NaN before the first object pose. A row without an object pose is
@@ -108,6 +112,7 @@ class Tracker:
             "object": _measured(object, "object"),
             "object_covariance": _measured(object_covariance, "object_covariance"),
             "pusher": _measured(pusher, "pusher"),
+            "fingers": [_measured(finger, "finger") for finger in fingers],
             "tactile": readings,
             "force": _measured(force, "force"),
         }
@@ -152,6 +157,7 @@ def _measured(values: Any, name: str) -> list[float] | None:
 def rows(log: Log) -> Iterator[Row]:
     """Yields the rows of a log: ``for row in rows(log): tracker.push(**row)``."""
     columns = log_of(log)
+    fingers = [f"finger_{k}" for k in range(1, len(columns) + 1) if f"finger_{k}_x" in columns]
     sensors = [f"tactile_{k}" for k in range(1, len(columns) + 1) if f"tactile_{k}" in columns]
 
     def group(row: int, *names: str) -> tuple[float, ...] | None:
@@ -167,6 +173,7 @@ def rows(log: Log) -> Iterator[Row]:
             "object": group(row, "object_x", "object_y", "object_theta"),
             "object_covariance": group(row, *COVARIANCE),
             "pusher": group(row, "pusher_x", "pusher_y", "pusher_theta"),
+            "fingers": [group(row, f"{finger}_x", f"{finger}_y", f"{finger}_theta") for finger in fingers],
             "tactile": [reading(columns[sensor][row]) for sensor in sensors],
             "force": group(row, "pusher_force_x", "pusher_force_y"),
         }

@@ -50,3 +50,30 @@ def test_a_reading_is_0_or_1_as_a_bool_an_int_or_a_numpy_number(scene):
     ]:
         with pytest.raises(stickslip.Error, match=words):
             tracker.push(1.0, **row)
+
+
+def test_hand_is_tracked_and_rolled_out() -> None:
+    finger = {"shape": [{"disc": {"radius": 0.005}}]}
+    jaw = stickslip.Scene.from_numbers(
+        gravity=9.81,
+        object={"mass": 0.5, "inertia": 2e-4, "shape": [{"disc": {"radius": 0.03}}]},
+        support={"friction": 0.3, "tripod_radius": 0.02},
+        pusher={**finger, "friction": 0.3, "stall_force": 20.0},
+        finger=[finger],
+        fixels={"friction": 0.25},
+        camera={"position_std": 3e-4, "orientation_std": 5e-3},
+    )
+    assert jaw.fingers == 1
+    way = np.linspace(0.0, 0.015, 46)
+    zero = np.zeros_like(way)
+    # both close on a disc that is 6 mm off their middle, and bring it there
+    fingers = np.stack([way - 0.05, zero, zero, 0.05 - way, zero, zero], axis=1)
+    end = stickslip.rollout(jaw, [[0.006, 0.0, 0.0]], fingers)["pose"][0, -1]
+    assert abs(end[0]) < 1e-4
+    tracker = stickslip.Tracker(jaw, particles=64)
+    for row, place in enumerate(fingers):
+        seen = (0.006 + 1e-9 * row, 0.0, 0.0) if row < 10 else None
+        estimate = tracker.push(row / 30, object=seen, pusher=place[:3], fingers=[place[3:]])
+    assert abs(estimate["x"]) < 1e-3 and estimate["contact_1"] > 0.5
+    with pytest.raises(stickslip.Error, match=r"\(1, T \+ 1, 6\)"):
+        stickslip.rollout(jaw, [[0.0, 0.0, 0.0]], fingers[:, :3])

@@ -72,7 +72,7 @@ fn write(scenes: Vec<(String, Scene)>) -> Result<(), Box<dyn Error>> {
 }
 
 fn with_object(base: &Scene, shape: Shape) -> Scene {
-    pushed_object(shape, base.pusher.shape.clone(), base.fixels.clone())
+    pushed_object(shape, base.pusher.fingers[0].clone(), base.fixels.clone())
 }
 
 /// The regular polygon whose first corner is at `radius` (m) in direction +x.

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use stickslip_dynamics::{
-    Feet, Fixel, Friction, Object, Part, Particle, Pose, Pusher, PusherMotion, Scene, Shape,
+    Feet, FingerMotion, Fixel, Friction, Object, Part, Particle, Pose, Pusher, Scene, Shape,
     ShapeError, StepInput, Twist,
 };
 use stickslip_filter::{Purpose, Streams};
@@ -45,7 +45,7 @@ pub fn pushed_object(object: Shape, pusher: Shape, fixels: Vec<Fixel>) -> Scene 
             angle: std::f64::consts::FRAC_PI_2,
         },
         pusher: Pusher {
-            shape: pusher,
+            fingers: vec![pusher],
             stall_force: None,
         },
         fixels,
@@ -94,11 +94,14 @@ pub fn timing_input(frame: u32) -> StepInput {
     };
     StepInput {
         h: FRAME,
-        pusher: Some(PusherMotion {
-            pose,
-            twist,
-            direction: [1.0, 0.0],
-        }),
+        pusher: Some(
+            FingerMotion {
+                pose,
+                twist,
+                direction: [1.0, 0.0],
+            }
+            .into(),
+        ),
     }
 }
 

@@ -21,7 +21,7 @@ use stickslip_report::{
 
 use crate::args::{FilterArgs, MethodName, Program};
 use crate::experiment::{
-    check_occlusion, check_sense, experiment_name, read_experiment, reference_name,
+    check_occlusion, check_sense, experiment_name, one_pusher, read_experiment, reference_name,
 };
 use crate::files::{Results, ready_file, ready_folder, refuse_inputs, write_report};
 use crate::given::Given;
@@ -76,6 +76,12 @@ pub fn filter(args: &FilterArgs) -> Result<Verdict> {
     check_sense(&args.shared.force, &experiment)
         .with_context(|| given.log.display().to_string())?;
     check_places(args, &given)?;
+    if args.report.is_some() {
+        one_pusher(&experiment.setup.scene, "a report")?;
+    }
+    if args.mcap {
+        one_pusher(&experiment.setup.scene, "a recording")?;
+    }
     let sample = CloudSample::new(DRAWN);
     let (run, seconds) =
         timed_run(args, &experiment, &sample).with_context(|| given.log.display().to_string())?;

@@ -14,7 +14,7 @@ use anyhow::Result;
 use stickslip::{Setup, TrackerOptions};
 use stickslip_report::live_page;
 
-use crate::experiment::read_scene_file;
+use crate::experiment::{one_pusher, read_scene_file};
 use crate::failure::hinted;
 use crate::given::scene_file;
 use crate::live_args::LiveArgs;
@@ -39,7 +39,7 @@ pub fn live(args: &LiveArgs) -> Result<Verdict> {
     };
     let deadline = args.deadline_ms.map(|milliseconds| 1e-3 * milliseconds);
     let mut session = Session::new(&setup, &options, deadline)?;
-    let record = |path| Recording::create(path, setup.scene.fixels.len());
+    let record = |path| Recording::create(path, &setup.scene);
     let mut recording = args.record.as_deref().map(record).transpose()?;
     let mut recorded = Verdict::Done;
     let mut page = args
@@ -118,6 +118,7 @@ fn stop_on_signal(stop: Stop) {
 
 /// Serves the live page of a scene, and says where.
 fn open_page(setup: &Setup, name: &str, port: u16) -> Result<PageServer> {
+    one_pusher(&setup.scene, "the page")?;
     let page = live_page(&setup.scene, name);
     let server = PageServer::start(page, port).map_err(|error| {
         hinted(

@@ -35,7 +35,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         },
         feet: Feet::Tripod { angle: 0.0 },
         pusher: Pusher {
-            shape: Shape::new(vec![Part::Disc { radius, centre }])?,
+            fingers: vec![Shape::new(vec![Part::Disc { radius, centre }])?],
             stall_force: Some(20.0),
         },
         fixels: Vec::new(),

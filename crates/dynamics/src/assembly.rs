@@ -9,7 +9,7 @@ use crate::geometry::placed::{Placed, may_touch};
 use crate::geometry::shape::Shape;
 use crate::geometry::transform::Transform;
 use crate::geometry::vec2::Vec2;
-use crate::input::{Body, PusherMotion};
+use crate::input::{Body, FingerMotion, MOST_FINGERS};
 use crate::ncp::rows::{ContactRow, FootRow, Ncp};
 use crate::ncp::unknowns::Unknowns;
 use crate::particles::{ContactImpulse, Particles, REMEMBERED};
@@ -37,6 +37,8 @@ pub struct Assembly<const W: usize> {
     pub(crate) rows: Vec<Row<W>>,
     /// Gap below which contacts take part (m).
     search_distance: Lanes<W>,
+    /// Direction in which each finger yields, lane by lane; zero while it is off the plane.
+    pub(crate) directions: [[Lanes<W>; 2]; MOST_FINGERS],
     pub(crate) scaling: Scaling<W>,
 }
 
@@ -65,8 +67,8 @@ pub(crate) struct Scaling<const W: usize> {
     /// Gap velocities up to this are zero for an object that stands (m/s); 0 where the pusher
     /// yields.
     still: f64,
-    /// F_stall h (N s) and the direction in which the pusher yields, lane by lane.
-    pub(crate) stall: Option<(f64, [Lanes<W>; 2])>,
+    /// F_stall h (N s); `None` where the pusher is rigid, or off the plane in every lane.
+    pub(crate) stall: Option<f64>,
 }
 
 /// The other body of a pair during one step.
@@ -75,7 +77,7 @@ struct Other<'a, const W: usize> {
     shape: &'a Shape,
     transform: Transform<Lanes<W>>,
     mu: Lanes<W>,
-    motion: Option<&'a PusherMotion<Lanes<W>>>,
+    motion: Option<FingerMotion<Lanes<W>>>,
     /// The lanes in which it may touch the object.
     active: Mask<W>,
 }
@@ -109,14 +111,20 @@ impl<const W: usize> Assembly<W> {
         self.set_body(prepared, &bodies, (particles, &object), ncp);
         let scene = &prepared.scene;
 
-        let pusher = bodies.pusher.map(|pusher| Other {
-            body: Body::Pusher,
-            shape: &scene.pusher.shape,
-            transform: pusher.transform,
-            mu: particles.friction.mu_p,
-            motion: Some(&pusher.motion),
-            active: pusher.present,
-        });
+        let fingers = scene.pusher.fingers.iter().enumerate().filter_map(
+            #[inline(always)]
+            |(i, shape)| {
+                let finger = bodies.pushers.finger(bodies.chunk, i)?;
+                Some(Other {
+                    body: Body::Finger(i),
+                    shape,
+                    transform: finger.transform,
+                    mu: particles.friction.mu_p,
+                    motion: Some(finger.motion),
+                    active: finger.present,
+                })
+            },
+        );
         let fixels = scene.fixels.iter().zip(&prepared.fixels).enumerate().map(
             #[inline(always)]
             |(j, (Fixel { shape, .. }, transform))| {
@@ -136,33 +144,45 @@ impl<const W: usize> Assembly<W> {
             },
         );
         // one call for all bodies: what is inlined there is much code
-        for mut other in pusher.into_iter().chain(fixels) {
+        for mut other in fingers.chain(fixels) {
+            if let (Body::Finger(i), Some(motion)) = (other.body, &other.motion) {
+                self.directions[i] = motion.direction;
+            }
             let near = self.may_touch(scene, &object, other.shape, other.transform.origin);
             other.active = other.active & near;
             if !other.active.any() {
                 continue;
             }
+            let first = self.rows.len();
             self.collide(scene, &object, &other, narrow, ncp);
-            if other.body == Body::Pusher {
+            if let Body::Finger(i) = other.body {
                 // which may stall
-                self.let_pusher_yield(particles, ncp);
+                self.let_finger_yield(i, first, particles, ncp);
             }
         }
     }
 
-    /// Writes the direction in which the pusher yields (docs/method.md (12)) into its contacts.
-    /// That is the direction of its motion where the motion presses on the object, else the normal
-    /// of its nearest contact.
+    /// Writes the direction in which a finger yields (docs/method.md (12)) into its contacts, which
+    /// begin with row `first`. That is the direction of its motion where the motion presses on the
+    /// object, else the normal of its nearest contact.
     #[inline(always)]
-    fn let_pusher_yield(&mut self, particles: &Particles<W>, ncp: &mut Ncp<W>) {
-        let rate = self.scaling.rate;
-        let Some((_, direction)) = &mut self.scaling.stall else {
+    fn let_finger_yield(
+        &mut self,
+        finger: usize,
+        first: usize,
+        particles: &Particles<W>,
+        ncp: &mut Ncp<W>,
+    ) {
+        if self.scaling.stall.is_none() {
             return;
-        };
+        }
+        let rate = self.scaling.rate;
+        let direction = &mut self.directions[finger];
+        let contacts = &mut ncp.contacts[first..];
         // the normal of the nearest contact
         let mut nearest = Lanes::splat(f64::INFINITY);
         let mut normal = *direction;
-        for (row, contact) in self.rows.iter().zip(&ncp.contacts) {
+        for (row, contact) in self.rows[first..].iter().zip(contacts.iter()) {
             let nearer = row.present & row.gap.lt(nearest);
             nearest = nearer.select(row.gap, nearest);
             for k in 0..2 {
@@ -175,9 +195,9 @@ impl<const W: usize> Assembly<W> {
             direction[k] = presses.select(direction[k], normal[k]);
         }
         // the way from where it stands to its pose lies in the gap already
-        let [x, y] = particles.pusher_lag;
+        let [x, y] = particles.pusher_lag[finger];
         let catch_up = [x * rate, y * rate];
-        for contact in &mut ncp.contacts {
+        for contact in contacts {
             contact.let_yield(*direction, catch_up);
         }
     }
@@ -214,7 +234,8 @@ impl<const W: usize> Assembly<W> {
         }: &PreparedScene,
         &StepBodies {
             context: &StepContext { h, rate, .. },
-            pusher,
+            pushers,
+            chunk,
             foot_offset,
             ..
         }: &StepBodies<'_, W>,
@@ -222,9 +243,9 @@ impl<const W: usize> Assembly<W> {
         ncp: &mut Ncp<W>,
     ) {
         let (mass, inertia) = (scene.object.mass, scene.object.inertia);
-        let stall = pusher
-            .zip(scene.pusher.stall_force)
-            .map(|(pusher, force)| (force * h, pusher.motion.direction));
+        let stall = scene.pusher.stall_force.map(|force| force * h);
+        let stall = stall.filter(|_| pushers.is_present(chunk));
+        self.directions = [[Lanes::ZERO; 2]; MOST_FINGERS];
         self.scaling = Scaling {
             mass,
             inertia,
@@ -234,7 +255,7 @@ impl<const W: usize> Assembly<W> {
             still: if stall.is_some() { 0.0 } else { STILL * rate },
             stall,
         };
-        ncp.stall = Lanes::splat(stall.map_or(f64::INFINITY, |(impulse, _)| impulse / mass));
+        ncp.stall = Lanes::splat(stall.map_or(f64::INFINITY, |impulse| impulse / mass));
         let Twist { vx, vy, omega } = particles.twist;
         let Wrench { fx, fy, torque } = particles.applied;
         ncp.free = [
@@ -307,7 +328,7 @@ impl<const W: usize> Assembly<W> {
     }
 
     /// Remembers the impulses of lanes that are solved, of the contacts the first [`REMEMBERED`]
-    /// that press, and where the pusher stands. Impulses of unsolved lanes would be a bad start:
+    /// that press, and where the fingers stand. Impulses of unsolved lanes would be a bad start:
     /// compliant impulses are a million times too large. So would be impulses that grow from step
     /// to step.
     #[inline(always)]
@@ -323,10 +344,12 @@ impl<const W: usize> Assembly<W> {
         }
         warm.pusher_yield = solved.zero_unless(p.pusher_yield);
         let way = p.pusher_yield * self.scaling.h;
-        particles.pusher_lag = match self.scaling.stall {
-            Some((_, [x, y])) => [x * way, y * way],
-            None => [Lanes::ZERO; 2],
-        };
+        for (lag, [x, y]) in particles.pusher_lag.iter_mut().zip(&self.directions) {
+            *lag = match self.scaling.stall {
+                Some(_) => [*x * way, *y * way],
+                None => [Lanes::ZERO; 2],
+            };
+        }
         let kept = solved & p.is_bounded();
         warm.contacts = [ContactImpulse::default(); REMEMBERED];
         let mut filled = Lanes::ZERO;
@@ -367,7 +390,7 @@ fn row<const W: usize>(
         arm: [x, y],
         ..
     } = *contact;
-    let u = other.motion.map_or([Lanes::ZERO; 2], |motion| {
+    let u = other.motion.as_ref().map_or([Lanes::ZERO; 2], |motion| {
         let arm = [
             object.origin[0] + x - motion.pose.x,
             object.origin[1] + y - motion.pose.y,

@@ -37,7 +37,8 @@ impl<const W: usize> Source<W> for BlockProblems<'_, W> {
             self.scene,
             StepBodies {
                 context: &self.context,
-                pusher: self.pushers.of(self.first + chunk).as_ref(),
+                pushers: self.pushers,
+                chunk: self.first + chunk,
                 fixel_offsets: self.pushers.fixel_offsets(self.first + chunk),
                 foot_offset: self.pushers.foot_offset(self.first + chunk),
             },

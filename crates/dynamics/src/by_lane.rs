@@ -65,15 +65,24 @@ impl<const W: usize> Pushers<'_, W> {
         let alone = |[x, y]: &[Lanes<W>; 2]| [Lanes([x.0[lane]]), Lanes([y.0[lane]])];
         match self {
             Self::Shared(pusher) => then(&Pushers::Shared(*pusher)),
-            Self::Each(pushers) => {
-                let pusher = pushers[chunk].as_ref();
-                then(&Pushers::Each(&[pusher.map(|pusher| pusher.lane(lane))]));
+            Self::Each { contexts, fingers } => {
+                let alone = contexts[chunk * fingers..][..*fingers].iter();
+                let alone: Vec<_> = alone
+                    .map(|finger| finger.as_ref().map(|finger| finger.lane(lane)))
+                    .collect();
+                then(&Pushers::Each {
+                    contexts: &alone,
+                    fingers: *fingers,
+                });
             }
             Self::Offset {
                 pusher,
                 offsets,
+                fingers,
                 fixels,
             } => {
+                let driven = offsets.pusher[chunk * fingers..][..*fingers].iter();
+                let driven: Vec<_> = driven.map(alone).collect();
                 let beside: Vec<_> = self.fixel_offsets(chunk).iter().map(alone).collect();
                 let feet = self.foot_offset(chunk).into_iter();
                 let feet: Vec<_> = feet
@@ -82,7 +91,7 @@ impl<const W: usize> Pushers<'_, W> {
                 let turn = offsets.pusher_turn.get(chunk);
                 let turn: Vec<_> = turn.map(|turn| Lanes([turn.0[lane]])).into_iter().collect();
                 let offsets = Offsets {
-                    pusher: &[alone(&offsets.pusher[chunk])],
+                    pusher: &driven,
                     pusher_turn: &turn,
                     fixels: &beside,
                     foot_offsets: &feet,
@@ -90,6 +99,7 @@ impl<const W: usize> Pushers<'_, W> {
                 then(&Pushers::Offset {
                     pusher: *pusher,
                     offsets,
+                    fingers: *fingers,
                     fixels: *fixels,
                 });
             }

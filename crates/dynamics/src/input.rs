@@ -1,12 +1,17 @@
 //! Input of one time step: [`StepInput`].
 
+use std::ops::{Deref, DerefMut};
+
 use stickslip_lanes::Lanes;
 
 use crate::se2::{Pose, Twist};
 
-/// The pusher during one step.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PusherMotion<T = f64> {
+/// Fingers that a pusher may have.
+pub const MOST_FINGERS: usize = 4;
+
+/// One finger of the pusher during one step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FingerMotion<T = f64> {
     /// Pose at the start of the step.
     pub pose: Pose<T>,
     /// Commanded twist during the step.
@@ -16,12 +21,68 @@ pub struct PusherMotion<T = f64> {
     pub direction: [T; 2],
 }
 
+/// The pusher during one step: a [`FingerMotion`] for each of its fingers, in the scene's order.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PusherMotion {
+    fingers: [FingerMotion; MOST_FINGERS],
+    count: usize,
+}
+
 impl PusherMotion {
+    /// The motions of 1 to [`MOST_FINGERS`] fingers; `None` if one is missing, or the number is
+    /// another.
+    pub fn new(motions: impl IntoIterator<Item = Option<FingerMotion>>) -> Option<Self> {
+        let mut all = Self {
+            fingers: [FingerMotion::default(); MOST_FINGERS],
+            count: 0,
+        };
+        for motion in motions {
+            *all.fingers.get_mut(all.count)? = motion?;
+            all.count += 1;
+        }
+        (all.count > 0).then_some(all)
+    }
+
+    /// Changes the motion of every finger.
+    #[must_use]
+    pub fn map(mut self, mut change: impl FnMut(FingerMotion) -> FingerMotion) -> Self {
+        for finger in self.iter_mut() {
+            *finger = change(*finger);
+        }
+        self
+    }
+}
+
+impl From<FingerMotion> for PusherMotion {
+    /// A pusher of one finger.
+    fn from(motion: FingerMotion) -> Self {
+        let mut fingers = [FingerMotion::default(); MOST_FINGERS];
+        fingers[0] = motion;
+        Self { fingers, count: 1 }
+    }
+}
+
+/// The fingers, at least one.
+impl Deref for PusherMotion {
+    type Target = [FingerMotion];
+
+    fn deref(&self) -> &[FingerMotion] {
+        &self.fingers[..self.count]
+    }
+}
+
+impl DerefMut for PusherMotion {
+    fn deref_mut(&mut self) -> &mut [FingerMotion] {
+        &mut self.fingers[..self.count]
+    }
+}
+
+impl FingerMotion {
     /// Copies the motion into every lane.
     #[inline(always)]
-    pub(crate) fn splat<const W: usize>(&self) -> PusherMotion<Lanes<W>> {
+    pub(crate) fn splat<const W: usize>(&self) -> FingerMotion<Lanes<W>> {
         let [dx, dy] = self.direction;
-        PusherMotion {
+        FingerMotion {
             pose: self.pose.map(Lanes::splat),
             twist: self.twist.map(Lanes::splat),
             direction: [Lanes::splat(dx), Lanes::splat(dy)],
@@ -33,10 +94,10 @@ impl PusherMotion {
 /// particle.
 #[derive(Clone, Copy, Debug)]
 pub struct Offsets<'a, const W: usize> {
-    /// Offset of the pusher (m), chunk by chunk.
+    /// Offsets of the pusher's fingers (m): those of the first chunk, then those of the second, ...
     pub pusher: &'a [[Lanes<W>; 2]],
-    /// Angles by which the pusher is turned from its pose (rad), chunk by chunk; empty where it is
-    /// not turned.
+    /// Angles by which each finger is turned from its pose (rad), chunk by chunk; empty where they
+    /// are not turned.
     pub pusher_turn: &'a [Lanes<W>],
     /// Offsets of the fixels (m): those of the first chunk, then those of the second, ...
     pub fixels: &'a [[Lanes<W>; 2]],
@@ -50,15 +111,15 @@ pub struct Offsets<'a, const W: usize> {
 pub struct StepInput {
     /// Step (s).
     pub h: f64,
-    /// The pusher; `None` while it is off the plane.
+    /// The pusher, with as many fingers as the scene's; `None` while it is off the plane.
     pub pusher: Option<PusherMotion>,
 }
 
 /// A body that the object may touch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Body {
-    /// The pusher.
-    Pusher,
+    /// The pusher's finger of this index; a pusher without others is finger 0.
+    Finger(usize),
     /// The fixel of this index.
     Fixel(usize),
 }
@@ -67,8 +128,8 @@ impl Body {
     /// Numbered from 1; 0 is no body.
     pub(crate) fn number(self) -> usize {
         match self {
-            Body::Pusher => 1,
-            Body::Fixel(j) => 2 + j,
+            Body::Finger(i) => 1 + i,
+            Body::Fixel(j) => 1 + MOST_FINGERS + j,
         }
     }
 }

@@ -4,6 +4,7 @@
 use stickslip_lanes::Lanes;
 
 use crate::friction::Friction;
+use crate::input::MOST_FINGERS;
 use crate::se2::{Pose, Twist, Wrench};
 
 /// Contacts whose impulses a particle remembers for its next step.
@@ -18,9 +19,10 @@ pub struct Particle {
     pub twist: Twist,
     /// Applied impulse p_app + w_app (N s, N s, N m s).
     pub applied: Wrench,
-    /// Vector from the pusher's actual position to its pose (m), world frame: the amount by which
-    /// it yielded in the step before. Zero where it stands at its pose.
-    pub pusher_lag: [f64; 2],
+    /// Vector from each finger's actual position to its pose (m), world frame: the amount by which
+    /// it yielded in the step before. Zero where it stands at its pose. All fingers lag equally
+    /// far.
+    pub pusher_lag: [[f64; 2]; MOST_FINGERS],
     /// Impulses of the step before.
     pub warm: WarmStart,
 }
@@ -121,8 +123,8 @@ pub struct Particles<const W: usize> {
     pub applied: Wrench<Lanes<W>>,
     /// Friction parameters; d_tri in m.
     pub friction: Friction<Lanes<W>>,
-    /// Way from where the pusher stands to its pose (m), world frame.
-    pub pusher_lag: [Lanes<W>; 2],
+    /// Way from where each finger stands to its pose (m), world frame.
+    pub pusher_lag: [[Lanes<W>; 2]; MOST_FINGERS],
     /// Impulses of the step before.
     pub warm: WarmStart<Lanes<W>>,
 }
@@ -135,10 +137,11 @@ fn set_lane<const W: usize, const N: usize>(to: [&mut Lanes<W>; N], lane: usize,
 }
 
 impl Particle {
-    /// Leaves the pusher at most `most` (m) behind its pose: it is dragged there.
+    /// Leaves each finger at most `most` (m) behind its pose: it is dragged there.
     pub fn limit_pusher_lag(&mut self, most: f64) {
-        let lag = limited(self.pusher_lag.map(|x| Lanes([x])), most);
-        self.pusher_lag = lag.map(|x| x.0[0]);
+        for lag in &mut self.pusher_lag {
+            *lag = limited(lag.map(|x| Lanes([x])), most).map(|x| x.0[0]);
+        }
     }
 }
 
@@ -158,7 +161,9 @@ impl<const W: usize> Particles<W> {
     /// [`Particle::limit_pusher_lag`] in every lane.
     #[inline(always)]
     pub fn limit_pusher_lag(&mut self, most: f64) {
-        self.pusher_lag = limited(self.pusher_lag, most);
+        for lag in &mut self.pusher_lag {
+            *lag = limited(*lag, most);
+        }
     }
 
     /// Overwrites one lane.
@@ -167,11 +172,9 @@ impl<const W: usize> Particles<W> {
         set_lane(self.twist.fields_mut(), lane, particle.twist.fields());
         set_lane(self.applied.fields_mut(), lane, particle.applied.fields());
         set_lane(self.friction.fields_mut(), lane, friction.fields());
-        set_lane(
-            self.pusher_lag.each_mut(),
-            lane,
-            particle.pusher_lag.each_ref(),
-        );
+        for (to, from) in self.pusher_lag.iter_mut().zip(&particle.pusher_lag) {
+            set_lane(to.each_mut(), lane, from.each_ref());
+        }
         set_lane(self.warm.fields_mut(), lane, particle.warm.fields());
     }
 
@@ -185,7 +188,7 @@ impl<const W: usize> Particles<W> {
             pose: self.pose.map(|x| x.0[lane]),
             twist: self.twist.map(|x| x.0[lane]),
             applied: self.applied.map(|x| x.0[lane]),
-            pusher_lag: self.pusher_lag.map(|x| x.0[lane]),
+            pusher_lag: self.pusher_lag.map(|lag| lag.map(|x| x.0[lane])),
             warm,
         }
     }

@@ -4,7 +4,7 @@
 use stickslip_lanes::{Lanes, Mask};
 
 use crate::geometry::transform::Transform;
-use crate::input::{Offsets, PusherMotion};
+use crate::input::{FingerMotion, MOST_FINGERS, Offsets, PusherMotion};
 use crate::scene::Scene;
 use crate::se2::{Pose, Twist};
 
@@ -41,17 +41,31 @@ impl PreparedScene {
         }
     }
 
-    /// Motion of the pusher in a step of several particles, each with its own pusher.
-    pub fn pushers<const W: usize>(
+    /// Asserts that a pusher has as many fingers as the scene's.
+    pub fn check(&self, pusher: &PusherMotion) {
+        assert_eq!(
+            pusher.len(),
+            self.scene.pusher.fingers.len(),
+            "a motion for each of the pusher's fingers"
+        );
+    }
+
+    /// Motion of one finger in a step of several particles, each with its own pusher.
+    pub fn finger<const W: usize>(
         &self,
         pushers: &[Option<PusherMotion>; W],
-    ) -> Option<PusherContext<W>> {
+        finger: usize,
+    ) -> Option<FingerContext<W>> {
         let first = pushers.iter().flatten().next()?;
-        let mut context: PusherContext<W> = SharedPusher::new(self, Some(first)).splat()?;
+        pushers
+            .iter()
+            .flatten()
+            .for_each(|pusher| self.check(pusher));
+        let mut context: FingerContext<W> = SharedFinger::new(self, first, finger).splat();
         for (lane, pusher) in pushers.iter().enumerate() {
             context.present.set(lane, pusher.is_some());
             if let Some(pusher) = pusher {
-                context.set(self, lane, pusher);
+                context.set(self, lane, pusher, finger);
             }
         }
         Some(context)
@@ -77,8 +91,10 @@ impl StepContext {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct StepBodies<'a, const W: usize> {
     pub context: &'a StepContext,
-    /// `None` while it is off the plane in every lane.
-    pub pusher: Option<&'a PusherContext<W>>,
+    /// The pusher of every chunk.
+    pub pushers: &'a Pushers<'a, W>,
+    /// Number of this one.
+    pub chunk: usize,
     /// Offsets of the fixels (m); none where they stand as the scene says.
     pub fixel_offsets: &'a [[Lanes<W>; 2]],
     /// Offset of the feet from the scene's, and their turn; `None` where they stand as in the
@@ -91,14 +107,21 @@ pub(crate) struct StepBodies<'a, const W: usize> {
 pub enum Pushers<'a, const W: usize> {
     /// One pusher for all particles.
     Shared(SharedPusher),
-    /// One for each particle, chunk by chunk.
-    Each(&'a [Option<PusherContext<W>>]),
+    /// One for each particle: the fingers of the first chunk, then those of the second, ...
+    Each {
+        /// A finger is `None` while it is off the plane in every lane.
+        contexts: &'a [Option<FingerContext<W>>],
+        /// Number of fingers.
+        fingers: usize,
+    },
     /// One pusher for all particles, offset from its pose, and fixels offset from theirs.
     Offset {
         /// The pusher at its pose.
         pusher: SharedPusher,
         /// Offsets of the pusher and of the fixels.
         offsets: Offsets<'a, W>,
+        /// Number of fingers.
+        fingers: usize,
         /// Number of fixels.
         fixels: usize,
     },
@@ -106,12 +129,19 @@ pub enum Pushers<'a, const W: usize> {
 
 /// One pusher for all particles; its lanes are made where they are used.
 #[derive(Clone, Copy, Debug)]
-pub struct SharedPusher(Option<(PusherMotion, Transform, f64)>);
+pub struct SharedPusher {
+    /// None while it is off the plane.
+    fingers: [Option<SharedFinger>; MOST_FINGERS],
+}
 
-/// A pusher's motion and where it stands, lane by lane.
+/// One finger for all particles: its motion, where it stands, and the speed of its fastest point.
 #[derive(Clone, Copy, Debug)]
-pub struct PusherContext<const W: usize> {
-    pub(crate) motion: PusherMotion<Lanes<W>>,
+struct SharedFinger(FingerMotion, Transform, f64);
+
+/// A finger's motion and where it stands, lane by lane.
+#[derive(Clone, Copy, Debug)]
+pub struct FingerContext<const W: usize> {
+    pub(crate) motion: FingerMotion<Lanes<W>>,
     pub(crate) transform: Transform<Lanes<W>>,
     /// Speed of its fastest point (m/s).
     pub(crate) speed: Lanes<W>,
@@ -121,37 +151,61 @@ pub struct PusherContext<const W: usize> {
 
 impl SharedPusher {
     pub(crate) fn new(scene: &PreparedScene, pusher: Option<&PusherMotion>) -> Self {
-        Self(pusher.map(|motion| {
-            let speed = fastest_point(scene, &motion.twist);
-            (*motion, Transform::from(motion.pose), speed)
-        }))
+        let mut fingers = [None; MOST_FINGERS];
+        if let Some(pusher) = pusher {
+            scene.check(pusher);
+            for (i, finger) in fingers.iter_mut().enumerate().take(pusher.len()) {
+                *finger = Some(SharedFinger::new(scene, pusher, i));
+            }
+        }
+        Self { fingers }
     }
 
-    /// It in every lane; `None` while it is off the plane.
+    /// One finger in every lane; `None` while it is off the plane.
     #[inline(always)]
-    fn splat<const W: usize>(&self) -> Option<PusherContext<W>> {
-        let (motion, transform, speed) = self.0.as_ref()?;
-        Some(PusherContext {
+    fn splat<const W: usize>(&self, finger: usize) -> Option<FingerContext<W>> {
+        self.fingers[finger].as_ref().map(SharedFinger::splat)
+    }
+}
+
+impl SharedFinger {
+    fn new(scene: &PreparedScene, pusher: &PusherMotion, finger: usize) -> Self {
+        let motion = pusher[finger];
+        let Twist { vx, vy, omega } = motion.twist;
+        // the finger's fastest point
+        let radius = scene.scene.pusher.fingers[finger].bounding_radius();
+        let speed = (vx * vx + vy * vy).sqrt() + omega.abs() * radius;
+        Self(motion, Transform::from(motion.pose), speed)
+    }
+
+    /// It in every lane.
+    #[inline(always)]
+    fn splat<const W: usize>(&self) -> FingerContext<W> {
+        let Self(motion, transform, speed) = self;
+        FingerContext {
             motion: motion.splat(),
             transform: transform.splat(),
             speed: Lanes::splat(*speed),
             present: Mask::splat(true),
-        })
+        }
     }
 }
 
 impl<const W: usize> Pushers<'_, W> {
-    /// That of one chunk; `None` while it is off the plane in every lane.
+    /// One finger of one chunk; `None` while it is off the plane in every lane.
     #[inline(always)]
-    pub fn of(&self, chunk: usize) -> Option<PusherContext<W>> {
+    pub fn finger(&self, chunk: usize, finger: usize) -> Option<FingerContext<W>> {
         match self {
-            Self::Shared(pusher) => pusher.splat(),
-            Self::Each(pushers) => pushers[chunk],
+            Self::Shared(pusher) => pusher.splat(finger),
+            Self::Each { contexts, fingers } => contexts[chunk * fingers + finger],
             Self::Offset {
-                pusher, offsets, ..
+                pusher,
+                offsets,
+                fingers,
+                ..
             } => {
-                let mut context: PusherContext<W> = pusher.splat()?;
-                let [x, y] = offsets.pusher[chunk];
+                let mut context: FingerContext<W> = pusher.splat(finger)?;
+                let [x, y] = offsets.pusher[chunk * fingers + finger];
                 context.motion.pose.x += x;
                 context.motion.pose.y += y;
                 context.transform.origin[0] += x;
@@ -163,6 +217,35 @@ impl<const W: usize> Pushers<'_, W> {
                 Some(context)
             }
         }
+    }
+
+    /// True if the pusher is on the plane in some lane of a chunk.
+    #[inline(always)]
+    pub fn is_present(&self, chunk: usize) -> bool {
+        match self {
+            Self::Shared(pusher) | Self::Offset { pusher, .. } => pusher.fingers[0].is_some(),
+            Self::Each { contexts, fingers } => contexts[chunk * fingers].is_some(),
+        }
+    }
+
+    /// Speed of the fastest point of the pushers of a chunk (m/s); 0 off the plane.
+    #[inline(always)]
+    pub fn speed(&self, chunk: usize, fingers: usize) -> Lanes<W> {
+        let of = |finger: usize| match self {
+            Self::Shared(pusher) | Self::Offset { pusher, .. } => match &pusher.fingers[finger] {
+                Some(SharedFinger(.., speed)) => Lanes::splat(*speed),
+                None => Lanes::ZERO,
+            },
+            Self::Each { contexts, fingers } => match &contexts[chunk * fingers + finger] {
+                Some(context) => context.speed,
+                None => Lanes::ZERO,
+            },
+        };
+        let mut fastest = of(0);
+        for finger in 1..fingers {
+            fastest = fastest.max(of(finger));
+        }
+        fastest
     }
 
     /// Offsets of the fixels (m) for one chunk; none where they stand as the scene says.
@@ -187,24 +270,23 @@ impl<const W: usize> Pushers<'_, W> {
     }
 }
 
-impl<const W: usize> PusherContext<W> {
+impl<const W: usize> FingerContext<W> {
     /// Overwrites one lane.
-    fn set(&mut self, scene: &PreparedScene, lane: usize, pusher: &PusherMotion) {
-        let alone: Option<PusherContext<1>> = SharedPusher::new(scene, Some(pusher)).splat();
-        let alone = alone.expect("there is a pusher");
+    fn set(&mut self, scene: &PreparedScene, lane: usize, pusher: &PusherMotion, finger: usize) {
+        let alone: FingerContext<1> = SharedFinger::new(scene, pusher, finger).splat();
         for (to, from) in self.numbers_mut().into_iter().zip(alone.numbers()) {
             to.0[lane] = from.0[0];
         }
     }
 
     /// One lane.
-    pub(crate) fn lane(&self, lane: usize) -> PusherContext<1> {
+    pub(crate) fn lane(&self, lane: usize) -> FingerContext<1> {
         let alone = |x: Lanes<W>| Lanes([x.0[lane]]);
         let Self {
             motion, transform, ..
         } = self;
-        PusherContext {
-            motion: PusherMotion {
+        FingerContext {
+            motion: FingerMotion {
                 pose: motion.pose.map(alone),
                 twist: motion.twist.map(alone),
                 direction: motion.direction.map(alone),
@@ -220,7 +302,7 @@ impl<const W: usize> PusherContext<W> {
     }
 
     fn numbers(&self) -> [&Lanes<W>; 13] {
-        let PusherMotion {
+        let FingerMotion {
             pose: Pose { x, y, theta },
             twist: Twist { vx, vy, omega },
             direction: [dx, dy],
@@ -235,7 +317,7 @@ impl<const W: usize> PusherContext<W> {
     }
 
     fn numbers_mut(&mut self) -> [&mut Lanes<W>; 13] {
-        let PusherMotion {
+        let FingerMotion {
             pose: Pose { x, y, theta },
             twist: Twist { vx, vy, omega },
             direction: [dx, dy],
@@ -248,10 +330,4 @@ impl<const W: usize> PusherContext<W> {
         let speed = &mut self.speed;
         [x, y, theta, vx, vy, omega, dx, dy, ox, oy, cos, sin, speed]
     }
-}
-
-/// Speed of the pusher's fastest point (m/s).
-fn fastest_point(scene: &PreparedScene, twist: &Twist) -> f64 {
-    let radius = scene.scene.pusher.shape.bounding_radius();
-    (twist.vx * twist.vx + twist.vy * twist.vy).sqrt() + twist.omega.abs() * radius
 }

@@ -2,7 +2,7 @@
 //! for callers who keep the numbers in arrays of their own.
 
 use crate::friction::Friction;
-use crate::input::PusherMotion;
+use crate::input::{FingerMotion, MOST_FINGERS, PusherMotion};
 use crate::ncp::report::Outcome;
 use crate::particles::{Particle, Particles};
 use crate::se2::{Pose, Twist};
@@ -54,8 +54,8 @@ pub struct Rollout {
 pub struct RolloutEnd {
     /// Steps without a certified solution.
     pub unsolved: u32,
-    /// Vector from the pusher's actual position at the end to its pose (m), world frame: the amount
-    /// by which it yielded. Zero where it stands at its pose.
+    /// Vector from the first finger's actual position at the end to its pose (m), world frame: the
+    /// amount by which it yielded. Zero where it stands at its pose.
     pub pusher_lag: [f64; 2],
     /// Length of the longest such way after any step (m).
     pub most_pusher_lag: f64,
@@ -64,8 +64,8 @@ pub struct RolloutEnd {
 /// The arrays of N trajectories as a caller keeps them. Trajectories count from 0 in the order of
 /// the starts, rows from 0, the start, to T.
 pub trait RolloutArrays {
-    /// Pose of the pusher of `trajectory` at `row`.
-    fn pusher(&self, trajectory: usize, row: usize) -> Pose;
+    /// Pose of a finger of `trajectory` at `row`.
+    fn finger(&self, trajectory: usize, row: usize, finger: usize) -> Pose;
 
     /// Keeps where the object of `trajectory` is at `row`, and how it moves.
     fn keep(&mut self, trajectory: usize, row: usize, pose: Pose, twist: Twist);
@@ -80,13 +80,15 @@ pub trait RolloutArrays {
 pub enum RolloutError {
     /// The pushers' poses do not go with the starts.
     #[error(
-        "there are {poses} pusher poses for {starts} trajectories; give T + 1 of each trajectory, at least 2, one trajectory after the other"
+        "there are {poses} pusher poses for {starts} trajectories; give T + 1 of each trajectory, at least 2, one trajectory after the other; each with one pose per finger, of {fingers}"
     )]
     Shape {
         /// Number of trajectories.
         starts: usize,
         /// Number of pusher poses.
         poses: usize,
+        /// Fingers of the scene's pusher.
+        fingers: usize,
     },
     /// The step is not positive, or too long.
     #[error("the step is {h} s; it must be above 0 and at most {LONGEST_STEP} s; try 1/30")]
@@ -110,8 +112,8 @@ impl Dynamics {
     /// Simulates one trajectory per start: T steps of `h` seconds (docs/method.md (11)), driven by
     /// a pusher of its own.
     ///
-    /// `pushers` holds the pusher's poses where steps begin and end, (N, T + 1), trajectory after
-    /// trajectory: start i under pusher i. The pusher moves straight from one to the next; where
+    /// `pushers` holds the poses of the pusher's fingers where steps begin and end, (N, T + 1,
+    /// fingers), trajectory after trajectory: start i under pusher i. The pusher moves straight from one to the next; where
     /// the scene gives it a stall force, it may fall behind, by as much as the object holds it
     /// back. A trajectory depends on nothing but its start and its pusher, and is the same, bit for
     /// bit, as step by step with [`Dynamics::step`]. One thread runs; share the starts among
@@ -124,7 +126,7 @@ impl Dynamics {
     /// # let disc = |radius| Shape::new(vec![Part::Disc { radius, centre: [0.0, 0.0] }]);
     /// # let friction = Friction { mu_s: 0.3, mu_p: 0.3, mu_f: 0.3, d_tri: 0.02 };
     /// # let object = Object { mass: 0.5, inertia: 2e-4, shape: disc(0.03)? };
-    /// # let pusher = Pusher { shape: disc(0.005)?, stall_force: None };
+    /// # let pusher = Pusher { fingers: vec![disc(0.005)?], stall_force: None };
     /// # let feet = Feet::Tripod { angle: 0.0 };
     /// let scene = Scene { gravity: 9.81, object, feet, pusher, fixels: vec![], nominal: friction };
     /// let at = |pose| RolloutStart { pose, twist: Twist::default(), friction };
@@ -145,20 +147,23 @@ impl Dynamics {
         starts: &[RolloutStart],
         pushers: &[Pose],
     ) -> Result<Rollout, RolloutError> {
-        let rows = pushers.len() / starts.len().max(1);
-        if rows * starts.len() != pushers.len() || (rows < 2 && !starts.is_empty()) {
+        let fingers = self.scene().pusher.fingers.len();
+        let rows = pushers.len() / (starts.len().max(1) * fingers);
+        if rows * starts.len() * fingers != pushers.len() || (rows < 2 && !starts.is_empty()) {
             return Err(RolloutError::Shape {
                 starts: starts.len(),
                 poses: pushers.len(),
+                fingers,
             });
         }
         let steps = rows.max(1) - 1;
         let mut columns = Columns {
             pushers,
+            fingers,
             rollout: Rollout {
                 steps,
-                poses: vec![Pose::default(); pushers.len()],
-                twists: vec![Twist::default(); pushers.len()],
+                poses: vec![Pose::default(); rows * starts.len()],
+                twists: vec![Twist::default(); rows * starts.len()],
                 ends: vec![RolloutEnd::default(); starts.len()],
             },
         };
@@ -179,7 +184,8 @@ impl Dynamics {
         arrays: &mut impl RolloutArrays,
         work: &mut RolloutWork,
     ) -> Result<(), RolloutError> {
-        check(h, steps, starts, arrays)?;
+        let fingers = self.scene().pusher.fingers.len();
+        check(h, steps, starts, (arrays, fingers))?;
         for (block, starts) in starts.chunks(ROLLOUT_BLOCK).enumerate() {
             let mut block = Block {
                 first: block * ROLLOUT_BLOCK,
@@ -197,7 +203,7 @@ fn check(
     h: f64,
     steps: usize,
     starts: &[RolloutStart],
-    arrays: &impl RolloutArrays,
+    (arrays, fingers): (&impl RolloutArrays, usize),
 ) -> Result<(), RolloutError> {
     if !(h > 0.0 && h <= LONGEST_STEP) {
         return Err(RolloutError::Step { h });
@@ -213,7 +219,8 @@ fn check(
         if !start.is_finite() {
             return not_finite("start", 0, trajectory);
         }
-        let bad = (0..=steps).find(|row| !arrays.pusher(trajectory, *row).is_finite());
+        let is_finite = |row, finger| arrays.finger(trajectory, row, finger).is_finite();
+        let bad = (0..=steps).find(|row| (0..fingers).any(|finger| !is_finite(*row, finger)));
         if let Some(row) = bad {
             return not_finite("pusher pose", row, trajectory);
         }
@@ -224,6 +231,7 @@ fn check(
 /// Trajectory after trajectory, as [`Dynamics::rollout`] takes and gives them.
 struct Columns<'a> {
     pushers: &'a [Pose],
+    fingers: usize,
     rollout: Rollout,
 }
 
@@ -234,8 +242,8 @@ impl Columns<'_> {
 }
 
 impl RolloutArrays for Columns<'_> {
-    fn pusher(&self, trajectory: usize, row: usize) -> Pose {
-        self.pushers[self.at(trajectory, row)]
+    fn finger(&self, trajectory: usize, row: usize, finger: usize) -> Pose {
+        self.pushers[self.at(trajectory, row) * self.fingers + finger]
     }
 
     fn keep(&mut self, trajectory: usize, row: usize, pose: Pose, twist: Twist) {
@@ -282,23 +290,29 @@ impl<A: RolloutArrays> Block<'_, A> {
         }
         self.keep(0, &particles);
 
-        let mut directions = [[0.0; 2]; ROLLOUT_BLOCK];
+        let fingers = dynamics.scene().pusher.fingers.len();
+        let mut directions = [[[0.0; 2]; MOST_FINGERS]; ROLLOUT_BLOCK];
         for (i, first) in directions[..count].iter_mut().enumerate() {
-            *first = self.first_direction(i, steps);
+            for (finger, first) in first[..fingers].iter_mut().enumerate() {
+                *first = self.first_direction(i, finger, steps);
+            }
         }
         let mut ends = [RolloutEnd::default(); ROLLOUT_BLOCK];
         let mut pushers = [[None; LANES]; CHUNKS];
         for step in 0..steps {
             // the pusher of each trajectory, straight from pose to pose
-            for (i, direction) in directions[..count].iter_mut().enumerate() {
-                let motion = motion(
-                    self.pusher(i, step),
-                    self.pusher(i, step + 1),
-                    h,
-                    *direction,
-                );
-                *direction = motion.direction;
-                pushers[i / LANES][i % LANES] = Some(motion);
+            for (i, directions) in directions[..count].iter_mut().enumerate() {
+                let fingers = directions[..fingers].iter_mut().enumerate();
+                let motions = fingers.map(|(finger, direction)| {
+                    let (from, to) = (
+                        self.finger(i, step, finger),
+                        self.finger(i, step + 1, finger),
+                    );
+                    let motion = motion(from, to, h, *direction);
+                    *direction = motion.direction;
+                    Some(motion)
+                });
+                pushers[i / LANES][i % LANES] = PusherMotion::new(motions);
             }
 
             dynamics.step_block_each(h, &pushers[..chunks], &mut particles[..chunks], work);
@@ -307,7 +321,7 @@ impl<A: RolloutArrays> Block<'_, A> {
             let reports = work.reports().as_flattened();
             for (i, (end, report)) in ends[..count].iter_mut().zip(reports).enumerate() {
                 end.unsolved += u32::from(report.outcome != Outcome::Solved);
-                end.pusher_lag = particles[i / LANES].pusher_lag.map(|x| x.0[i % LANES]);
+                end.pusher_lag = particles[i / LANES].pusher_lag[0].map(|x| x.0[i % LANES]);
                 let [x, y] = end.pusher_lag;
                 end.most_pusher_lag = end.most_pusher_lag.max(libm::hypot(x, y));
             }
@@ -317,8 +331,8 @@ impl<A: RolloutArrays> Block<'_, A> {
         }
     }
 
-    fn pusher(&self, i: usize, row: usize) -> Pose {
-        self.arrays.pusher(self.first + i, row)
+    fn finger(&self, i: usize, row: usize, finger: usize) -> Pose {
+        self.arrays.finger(self.first + i, row, finger)
     }
 
     /// Keeps where the object is at row `row` of each trajectory.
@@ -331,18 +345,19 @@ impl<A: RolloutArrays> Block<'_, A> {
         }
     }
 
-    /// The direction of a pusher's first translation; any where it never moves.
-    fn first_direction(&self, i: usize, steps: usize) -> [f64; 2] {
-        let mut moves = (0..steps).map(|row| (self.pusher(i, row), self.pusher(i, row + 1)));
+    /// The direction of a finger's first translation; any where it never moves.
+    fn first_direction(&self, i: usize, finger: usize, steps: usize) -> [f64; 2] {
+        let at = |row| self.finger(i, row, finger);
+        let mut moves = (0..steps).map(|row| (at(row), at(row + 1)));
         moves
             .find_map(|(from, to)| direction(from, to))
             .unwrap_or([1.0, 0.0])
     }
 }
 
-/// The pusher from `from` to `to` in `h` seconds; `last` is its last direction of translation.
-fn motion(from: Pose, to: Pose, h: f64, last: [f64; 2]) -> PusherMotion {
-    PusherMotion {
+/// A finger from `from` to `to` in `h` seconds; `last` is its last direction of translation.
+fn motion(from: Pose, to: Pose, h: f64, last: [f64; 2]) -> FingerMotion {
+    FingerMotion {
         pose: from,
         twist: from.twist_to(to, h),
         direction: direction(from, to).unwrap_or(last),

@@ -3,6 +3,7 @@
 
 use crate::friction::Friction;
 use crate::geometry::shape::Shape;
+use crate::input::Body;
 use crate::se2::Pose;
 
 /// The pushed object; the origin of its frame is its centre of mass.
@@ -41,12 +42,14 @@ pub enum Feet {
     },
 }
 
-/// The pusher (thumb): a position source with an optional stall force.
+/// The driven body, a position source with an optional stall force: one finger (thumb), or the
+/// fingers of a hand that share a drive.
 #[derive(Clone, Debug)]
 pub struct Pusher {
-    /// Outline in the pusher frame.
-    pub shape: Shape,
-    /// Force at which it yields (N); `None` is a rigid position source.
+    /// Outline of each finger in its own frame: 1 to [`MOST_FINGERS`](crate::MOST_FINGERS).
+    pub fingers: Vec<Shape>,
+    /// Force at which the drive yields (N), summed over the fingers, each along its own direction;
+    /// `None` is a rigid position source.
     pub stall_force: Option<f64>,
 }
 
@@ -71,8 +74,40 @@ pub struct Scene {
     pub feet: Feet,
     /// The pusher.
     pub pusher: Pusher,
-    /// The fixels; sensor k is the k-th one.
+    /// The fixels.
     pub fixels: Vec<Fixel>,
     /// Nominal friction parameters.
     pub nominal: Friction,
+}
+
+impl Scene {
+    /// Number of bodies besides the object and the pusher's first finger.
+    pub fn others(&self) -> usize {
+        self.fixels.len() + self.pusher.fingers.len() - 1
+    }
+
+    /// The one of them with index `j`: the fixels, then the other fingers.
+    pub fn other(&self, j: usize) -> Body {
+        match j.checked_sub(self.fixels.len()) {
+            None => Body::Fixel(j),
+            Some(finger) => Body::Finger(1 + finger),
+        }
+    }
+
+    /// Number of bodies that may have a tactile sensor: the fixels, then the fingers of a hand of
+    /// several.
+    pub fn sensors(&self) -> usize {
+        match self.pusher.fingers.len() {
+            1 => self.fixels.len(),
+            fingers => self.fixels.len() + fingers,
+        }
+    }
+
+    /// The body of sensor `k`.
+    pub fn sensed(&self, k: usize) -> Body {
+        match k.checked_sub(self.fixels.len()) {
+            None => Body::Fixel(k),
+            Some(finger) => Body::Finger(finger),
+        }
+    }
 }

@@ -2,7 +2,7 @@
 
 use crate::assembly::{Assembly, Scaling};
 use crate::input::Body;
-use crate::ncp::problem::{ContactPoint, Foot, Stall, StepProblem};
+use crate::ncp::problem::{ContactPoint, Foot, StepProblem};
 use crate::ncp::rows::{FootRow, Ncp};
 use crate::se2::{Twist, Wrench};
 
@@ -53,7 +53,10 @@ impl<const W: usize> Assembly<W> {
                 gap,
                 mu: numbers.mu.0[lane],
                 surface_velocity: [nx * approach - ny * slip, ny * approach + nx * slip],
-                on_pusher: row.body == Body::Pusher,
+                yields: match row.body {
+                    Body::Finger(i) => Some(self.directions[i].map(|d| d.0[lane])),
+                    Body::Fixel(_) => None,
+                },
             }
         });
         StepProblem {
@@ -68,10 +71,7 @@ impl<const W: usize> Assembly<W> {
             applied: Wrench::default(),
             contacts: contacts.collect(),
             feet: ncp.feet.each_ref().map(foot),
-            stall: stall.map(|(impulse, direction)| Stall {
-                impulse,
-                direction: direction.map(|d| d.0[lane]),
-            }),
+            stall,
         }
     }
 }

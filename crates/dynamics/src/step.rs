@@ -14,7 +14,7 @@ use crate::friction::Friction;
 use crate::input::{Offsets, PusherMotion, StepInput};
 use crate::ncp::report::{Outcome, Report};
 use crate::particles::{Particle, Particles};
-use crate::prepared_scene::{PreparedScene, PusherContext, Pushers, SharedPusher, StepContext};
+use crate::prepared_scene::{PreparedScene, Pushers, SharedPusher, StepContext};
 use crate::scene::Scene;
 use crate::se2::{Twist, Wrench};
 use crate::step_work::StepWork;
@@ -81,6 +81,9 @@ impl Dynamics {
     /// Every contact that could act takes part. Where the solved twist could have closed a larger
     /// gap than was looked for, the step is solved again with a wider search. A particle's result
     /// depends on nothing but the particle and the input.
+    ///
+    /// # Panics
+    /// If the input's pusher has not as many fingers as the scene's.
     pub fn step_block<const W: usize>(
         &self,
         input: &StepInput,
@@ -100,7 +103,8 @@ impl Dynamics {
     /// bit.
     ///
     /// # Panics
-    /// If there are not as many chunks of pushers as of particles.
+    /// If there are not as many chunks of pushers as of particles, or a pusher has not as many
+    /// fingers as the scene's.
     pub fn step_block_each<const W: usize>(
         &self,
         h: f64,
@@ -117,8 +121,15 @@ impl Dynamics {
         );
         let mut contexts = std::mem::take(&mut work.pushers);
         contexts.clear();
-        contexts.extend(pushers.iter().map(|pushers| self.scene.pushers(pushers)));
-        work.step(self, h, &Pushers::Each(&contexts), particles);
+        let fingers = self.scene.scene.pusher.fingers.len();
+        for pushers in pushers {
+            contexts.extend((0..fingers).map(|i| self.scene.finger(pushers, i)));
+        }
+        let each = Pushers::Each {
+            contexts: &contexts,
+            fingers,
+        };
+        work.step(self, h, &each, particles);
         work.pushers = contexts;
     }
 
@@ -126,7 +137,7 @@ impl Dynamics {
     /// feet from the given poses.
     ///
     /// # Panics
-    /// If an offset of the pusher or of a fixel is missing for a chunk of particles. Also if the
+    /// If an offset of a finger or of a fixel is missing for a chunk of particles. Also if the
     /// turns of the pusher or the offsets of the feet are neither none at all nor one for each
     /// chunk.
     pub fn step_block_offset<const W: usize>(
@@ -139,7 +150,12 @@ impl Dynamics {
         StepWork<W>: CompiledStep<W>,
     {
         let (chunks, fixels) = (particles.len(), self.scene.fixels.len());
-        assert_eq!(offsets.pusher.len(), chunks, "an offset for each chunk");
+        let fingers = self.scene.scene.pusher.fingers.len();
+        assert_eq!(
+            offsets.pusher.len(),
+            chunks * fingers,
+            "an offset for each finger"
+        );
         assert_eq!(offsets.fixels.len(), chunks * fixels, "and for each fixel");
         let turn = offsets.pusher_turn.len();
         assert!(turn == chunks || turn == 0, "a turn for each chunk");
@@ -148,6 +164,7 @@ impl Dynamics {
         let pushers = Pushers::Offset {
             pusher: SharedPusher::new(&self.scene, input.pusher.as_ref()),
             offsets,
+            fingers,
             fixels,
         };
         work.step(self, input.h, &pushers, particles);
@@ -166,11 +183,9 @@ impl Dynamics {
 
         // how far apart contacts are looked for
         for (chunk, particles) in particles.iter().enumerate() {
-            work.chunks[chunk].set_search_distance(self.search_distance(
-                h,
-                pushers.of(chunk).as_ref(),
-                particles,
-            ));
+            let pusher = self.pusher_speed(pushers, chunk);
+            let distance = self.search_distance(h, pusher, particles);
+            work.chunks[chunk].set_search_distance(distance);
         }
 
         // solve all chunks, then again the lanes that moved farther than was looked for
@@ -257,7 +272,7 @@ impl Dynamics {
         for chunk in first..count {
             let searched = work.chunks[chunk].search_distance();
             let object = self.point_speed(&work.twist(chunk, self.scene.inv_rho));
-            let needed = (object + pusher_speed(pushers.of(chunk).as_ref())) * h;
+            let needed = (object + self.pusher_speed(pushers, chunk)) * h;
             let wider = needed.gt(searched)
                 & needed.lt(Lanes::splat(f64::INFINITY))
                 & searched.lt(Lanes::splat(WIDEST));
@@ -292,30 +307,27 @@ impl Dynamics {
         length_at_most(vx, vy) + omega.abs() * self.object_radius
     }
 
-    /// Gap below which contacts of a chunk are sought (m): the distance that object and pusher can
-    /// close within the step, with room for the velocity that the contacts add.
+    /// Speed of the fastest point of each pusher of a chunk (m/s); 0 off the plane.
+    #[inline(always)]
+    fn pusher_speed<const W: usize>(&self, pushers: &Pushers<'_, W>, chunk: usize) -> Lanes<W> {
+        pushers.speed(chunk, self.scene.scene.pusher.fingers.len())
+    }
+
+    /// Gap below which contacts of a chunk are sought (m): the distance that object and pusher, of
+    /// this speed (m/s), can close within the step, with room for the velocity that the contacts
+    /// add.
     #[inline(always)]
     fn search_distance<const W: usize>(
         &self,
         h: f64,
-        pusher: Option<&PusherContext<W>>,
+        pusher: Lanes<W>,
         particles: &Particles<W>,
     ) -> Lanes<W> {
         let Wrench { fx, fy, torque } = &particles.applied;
         let kick = length_at_most(fx, fy) * self.scene.inv_mass
             + torque.abs() * (self.scene.inv_inertia * self.object_radius);
-        let pusher = pusher_speed(pusher);
         let object = (self.point_speed(&particles.twist) + kick).max(pusher);
         (object * 1.5 + pusher) * h + MARGIN
-    }
-}
-
-/// Speed of the fastest point of each pusher of a chunk (m/s); 0 off the plane.
-#[inline(always)]
-fn pusher_speed<const W: usize>(pusher: Option<&PusherContext<W>>) -> Lanes<W> {
-    match pusher {
-        Some(pusher) => pusher.speed,
-        None => Lanes::ZERO,
     }
 }
 

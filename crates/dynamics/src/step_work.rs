@@ -10,7 +10,7 @@ use crate::ncp::problem::{StepProblem, StepSolution};
 use crate::ncp::report::Report;
 use crate::ncp::rows::Ncp;
 use crate::ncp::unknowns::Unknowns;
-use crate::prepared_scene::PusherContext;
+use crate::prepared_scene::FingerContext;
 use crate::se2::Twist;
 use crate::solver::chain::Solver;
 
@@ -25,8 +25,8 @@ pub struct StepWork<const W: usize> {
     pub(crate) reports: Vec<[Report; W]>,
     pub(crate) solver: Solver<W>,
     pub(crate) kept: KeptLanes<W>,
-    /// Of steps in which every particle has its own.
-    pub(crate) pushers: Vec<Option<PusherContext<W>>>,
+    /// Fingers, of steps in which every particle has its own pusher.
+    pub(crate) pushers: Vec<Option<FingerContext<W>>>,
     /// Of the particles one by one, where they are stepped so; else empty.
     pub(crate) by_lane: Vec<StepWork<1>>,
 }

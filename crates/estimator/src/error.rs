@@ -4,7 +4,7 @@ use stickslip_filter::{SeriesError, SettingsError};
 
 use crate::counted::counted;
 use crate::range::SetupError;
-use crate::row::{LONGEST_PAUSE, RowError};
+use crate::row::{LONGEST_PAUSE, RowError, counted_bodies};
 
 /// Reason why a method could not be run on a log.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -109,16 +109,29 @@ pub enum RunError {
     /// Filter settings out of range.
     #[error(transparent)]
     Settings(#[from] SettingsError),
-    /// More sensors than fixels.
+    /// More sensors than bodies for them.
     #[error(
-        "the log has {} but the scene has {}; sensor k is the k-th [[fixel]]",
+        "the log has {} but the scene has {}; sensor k is the k-th [[fixel]], or behind them a finger of a hand",
         counted(*.sensors as u64, "tactile column"),
-        counted(*.fixels as u64, "fixel")
+        counted_bodies(*.fixels, *.fingers)
     )]
     Sensors {
         /// Tactile columns.
         sensors: usize,
         /// Fixels of the scene.
         fixels: usize,
+        /// Fingers of the scene.
+        fingers: usize,
+    },
+    /// Another number of fingers than the scene's.
+    #[error(
+        "the log has poses of {} besides the pusher but the scene has {}; [[finger]] k has its pose in finger_k_x, finger_k_y and finger_k_theta",
+        counted(*.found as u64, "finger"), counted(*.fingers as u64, "[[finger]] table")
+    )]
+    Fingers {
+        /// Fingers of the log besides the pusher.
+        found: usize,
+        /// `[[finger]]` tables of the scene.
+        fingers: usize,
     },
 }

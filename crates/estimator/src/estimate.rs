@@ -83,11 +83,12 @@ pub struct EstimateRow {
     /// Friction parameters. `d_tri` is ignored where the feet are known (see
     /// [`Estimate::has_tripod`]).
     pub friction: Option<Friction>,
-    /// Posterior probability of contact with the pusher.
+    /// Posterior probability of contact with the pusher, or with the first finger of a hand.
     pub contact_pusher: Option<f64>,
-    /// Posterior probability of contact with each fixel.
-    pub contact_fixels: Option<Vec<f64>>,
-    /// Slip of the object on what it touches: on the pusher, then on each fixel.
+    /// Posterior probability of contact with each fixel, then with each other finger of a hand.
+    pub contact_others: Option<Vec<f64>>,
+    /// Slip of the object on what it touches: on the pusher, then on each fixel, then on each other
+    /// finger.
     pub slip: Option<Vec<ContactSlip>>,
     /// Standard deviations and covariances.
     pub spread: Option<Spread>,
@@ -136,8 +137,9 @@ pub struct Estimate {
     pub time: Vec<f64>,
     /// Rows.
     pub rows: Vec<EstimateRow>,
-    /// Number of fixels.
-    pub fixels: usize,
+    /// Number of bodies besides the object and the pusher's first finger: the fixels, then the
+    /// other fingers.
+    pub others: usize,
     /// True if d_tri is a parameter. It is false if the feet are known; its columns are then empty.
     pub has_tripod: bool,
 }

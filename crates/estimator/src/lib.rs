@@ -55,7 +55,7 @@ pub use pusher::track::{PusherTrack, Tracking};
 pub use pusher::tracked_pose::TrackedPose;
 pub use quantile::quantile;
 pub use range::{Rule, SetupError, Unit};
-pub use row::{Row, RowError};
+pub use row::{Row, RowError, counted_bodies};
 pub use run::{Run, run, run_observed};
 pub use setup::{Camera, FilterSettings, ForceSensor, Limits, Setup, Tactile};
 pub use stickslip_dynamics as dynamics;

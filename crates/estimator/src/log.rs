@@ -1,6 +1,6 @@
 //! One recorded experiment: [`Log`], columns of equal length, one row per camera frame.
 
-use stickslip_dynamics::Pose;
+use stickslip_dynamics::{Pose, Scene};
 
 use crate::covariance::PoseCovariance;
 use crate::error::RunError;
@@ -18,9 +18,12 @@ pub struct Log {
     /// Covariance of each object pose; `None`: the noise of the scene's camera. The column is empty
     /// if the log has no covariances.
     pub object_covariance: Vec<Option<PoseCovariance>>,
-    /// Measured pusher poses.
+    /// Measured poses of the pusher, or of the first finger of a hand.
     pub pusher: Vec<Option<Pose>>,
-    /// Tactile readings: one column per fixel sensor, over the interval that ends at the row.
+    /// Measured poses of the hand's other fingers: one column for each.
+    pub other_fingers: Vec<Vec<Option<Pose>>>,
+    /// Tactile readings over the interval that ends at the row: one column per sensor of a fixel,
+    /// then one per sensor of a hand's finger.
     pub tactile: Vec<Vec<Option<bool>>>,
     /// Force of the pusher on the object, world frame (N); empty where the log has no force
     /// columns.
@@ -44,6 +47,9 @@ impl Log {
         self.object.truncate(rows);
         self.object_covariance.truncate(rows);
         self.pusher.truncate(rows);
+        for finger in &mut self.other_fingers {
+            finger.truncate(rows);
+        }
         for sensor in &mut self.tactile {
             sensor.truncate(rows);
         }
@@ -57,11 +63,24 @@ impl Log {
         out_of_sight(&self.time, &self.object)
     }
 
-    /// For each row, true if the pusher is not seen. A row between its poses that another sensor
-    /// brought does not count.
+    /// For each row, true if a finger of the pusher is not seen. A row between its poses that
+    /// another sensor brought does not count.
     #[must_use]
     pub fn pusher_out_of_sight(&self) -> Vec<bool> {
-        out_of_sight(&self.time, &self.pusher)
+        let mut hidden = out_of_sight(&self.time, &self.pusher);
+        for finger in &self.other_fingers {
+            let finger = out_of_sight(&self.time, finger);
+            for (hidden, finger) in hidden.iter_mut().zip(finger) {
+                *hidden |= finger;
+            }
+        }
+        hidden
+    }
+
+    /// Measured poses of each finger: of the pusher, then of a hand's other fingers.
+    pub fn fingers(&self) -> impl Iterator<Item = &[Option<Pose>]> {
+        let others = self.other_fingers.iter().map(Vec::as_slice);
+        std::iter::once(&self.pusher[..]).chain(others)
     }
 
     /// Returns the measurements of row `row`.
@@ -74,22 +93,33 @@ impl Log {
             object: self.object[row],
             object_covariance: self.object_covariance.get(row).copied().flatten(),
             pusher: self.pusher[row],
+            other_fingers: self.other_fingers.iter().map(|poses| poses[row]).collect(),
             tactile: self.tactile.iter().map(|sensor| sensor[row]).collect(),
             force: self.force.get(row).copied().flatten(),
         }
     }
 
-    /// Refuses a log that no method can use: columns of unequal length, more sensors than `fixels`,
-    /// times that do not rise or pause too long, impossible numbers.
-    pub(crate) fn check(&self, fixels: usize) -> Result<(), RunError> {
+    /// Refuses a log that no method can use: columns of unequal length, more sensors or other
+    /// fingers than the scene's, times that do not rise or pause too long, impossible numbers.
+    pub(crate) fn check(&self, scene: &Scene) -> Result<(), RunError> {
         self.check_columns()?;
+        let (found, fingers) = (self.other_fingers.len(), scene.pusher.fingers.len());
+        if found + 1 != fingers {
+            let fingers = fingers - 1;
+            return Err(RunError::Fingers { found, fingers });
+        }
         let sensors = self.tactile.len();
-        if sensors > fixels {
-            return Err(RunError::Sensors { sensors, fixels });
+        if sensors > scene.sensors() {
+            let fixels = scene.fixels.len();
+            return Err(RunError::Sensors {
+                sensors,
+                fixels,
+                fingers,
+            });
         }
         for row in 0..self.len() {
             let problem = |problem| RunError::LogRow { row, problem };
-            self.row(row).check(fixels).map_err(problem)?;
+            self.row(row).check(scene).map_err(problem)?;
             let Some(before) = row.checked_sub(1) else {
                 continue;
             };
@@ -122,6 +152,8 @@ impl Log {
             ("object".to_owned(), self.object.len()),
             ("pusher".to_owned(), self.pusher.len()),
         ];
+        let fingers = self.other_fingers.iter().zip(1..);
+        columns.extend(fingers.map(|(column, k)| (format!("finger {k}"), column.len())));
         let tactile = self.tactile.iter().zip(1..);
         columns.extend(tactile.map(|(column, k)| (format!("tactile {k}"), column.len())));
         let optional = [

@@ -35,7 +35,7 @@ impl<'a> PreparedLog<'a> {
     pub fn new(setup: &Setup, log: &'a Log, options: &RunOptions) -> Result<Self, RunError> {
         setup.check()?;
         TrackerOptions::of(options).check()?;
-        log.check(setup.scene.fixels.len())?;
+        log.check(&setup.scene)?;
         let hidden = options.occlusion.hidden(log);
         let mut seen = (0..log.len()).filter_map(|row| {
             log.object[row]
@@ -72,7 +72,7 @@ impl<'a> PreparedLog<'a> {
         Estimate {
             time: self.log.time.clone(),
             rows: vec![EstimateRow::default(); self.log.len()],
-            fixels: setup.scene.fixels.len(),
+            others: setup.scene.others(),
             has_tripod: setup.has_tripod(),
         }
     }

@@ -161,7 +161,7 @@ impl WitnessState {
         }
         for (body, normal) in step.bodies.iter().zip(&step.solution.normal) {
             match body {
-                Body::Pusher => self.pushed |= *normal > 0.0,
+                Body::Finger(_) => self.pushed |= *normal > 0.0,
                 Body::Fixel(_) => self.held |= *normal > 0.0,
             }
         }
@@ -188,16 +188,17 @@ impl<'a> Witness<'a> {
         }
     }
 
-    /// Returns impulse and gap of a fixel, over all contacts with it. The gap is that after the
-    /// step.
-    fn contact(&self, step: &SolvedStep<'_>, fixel: usize) -> (f64, f64) {
+    /// Returns impulse and gap of the body of a sensor, over all contacts with it. The gap is that
+    /// after the step.
+    fn contact(&self, step: &SolvedStep<'_>, sensor: usize) -> (f64, f64) {
+        let sensed = self.setup.scene.sensed(sensor);
         let SolvedStep {
             problem, solution, ..
         } = step;
         let (mut impulse, mut gap) = (0.0, f64::INFINITY);
         let contacts = problem.contacts.iter().zip(&solution.normal);
         for ((contact, normal), body) in contacts.zip(step.bodies) {
-            if *body == Body::Fixel(fixel) {
+            if *body == sensed {
                 let ([nx, ny], [rx, ry]) = (contact.normal, contact.arm);
                 let twist = solution.twist;
                 let opening = nx * twist.vx + ny * twist.vy + (rx * ny - ry * nx) * twist.omega;
@@ -214,8 +215,8 @@ impl<'a> Witness<'a> {
 
 impl Observer for Witness<'_> {
     fn on_step(&self, step: &SolvedStep<'_>) {
-        let fixels = 0..self.setup.scene.fixels.len();
-        let contacts = fixels.map(|j| self.contact(step, j)).collect();
+        let sensors = 0..self.setup.scene.sensors();
+        let contacts = sensors.map(|j| self.contact(step, j)).collect();
         let mut state = self.state.lock().expect("one thread");
         state.contacts = contacts;
         state.add(step);
@@ -229,7 +230,7 @@ impl Observer for Witness<'_> {
                 let impulse = if particles.is_driven() { *impulse } else { 0.0 };
                 touch_probability(Lanes([impulse]), Lanes([*gap])).0[0]
             }
-            FilterModel::Paper => f64::from(u8::from(particles.touches_fixel(0, j))),
+            FilterModel::Paper => f64::from(u8::from(particles.touches_sensor(0, j))),
         });
         let touch = touch.collect();
         let scale = particles.force_scale(0).zip(self.setup.wrench);

@@ -1,6 +1,6 @@
 //! Measurements of one camera frame: [`Row`].
 
-use stickslip_dynamics::Pose;
+use stickslip_dynamics::{Pose, Scene};
 
 use crate::counted::counted;
 use crate::covariance::PoseCovariance;
@@ -34,10 +34,12 @@ pub struct Row {
     /// Covariance of that pose; `None`: the noise of the scene's camera. It is ignored without a
     /// pose.
     pub object_covariance: Option<PoseCovariance>,
-    /// Pose of the pusher.
+    /// Pose of the pusher, or of the first finger of a hand.
     pub pusher: Option<Pose>,
-    /// Tactile readings over the interval that ends here, sensor k on fixel k. Sensors past the end
-    /// are silent.
+    /// Poses of the hand's other fingers; those past the end are missing.
+    pub other_fingers: Vec<Option<Pose>>,
+    /// Tactile readings over the interval that ends here, sensor k on fixel k, those of a hand's
+    /// fingers behind them. Sensors past the end are silent.
     pub tactile: Vec<Option<bool>>,
     /// Force of the pusher on the object over the same interval, world frame (N).
     pub force: Option<[f64; 2]>,
@@ -89,11 +91,11 @@ pub enum RowError {
         /// The covariance found.
         covariance: PoseCovariance,
     },
-    /// More sensors than fixels.
+    /// More sensors than bodies for them.
     #[error(
-        "the row at {time} s has {} but the scene has {}; sensor k is on the k-th [[fixel]]",
+        "the row at {time} s has {} but the scene has {}; sensor k is on the k-th [[fixel]], or behind them on a finger of a hand",
         counted(*.sensors as u64, "tactile reading"),
-        counted(*.fixels as u64, "fixel")
+        counted_bodies(*.fixels, *.fingers)
     )]
     Sensors {
         /// Time of the row (s).
@@ -102,6 +104,21 @@ pub enum RowError {
         sensors: usize,
         /// Fixels of the scene.
         fixels: usize,
+        /// Fingers of the scene.
+        fingers: usize,
+    },
+    /// More fingers than the scene's.
+    #[error(
+        "the row at {time} s has poses of {} besides the pusher but the scene has {}; give one pose for each [[finger]]",
+        counted(*.found as u64, "finger"), counted(*.fingers as u64, "[[finger]] table")
+    )]
+    Fingers {
+        /// Time of the row (s).
+        time: f64,
+        /// Fingers with a pose, or with a place for one, besides the pusher.
+        found: usize,
+        /// `[[finger]]` tables of the scene.
+        fingers: usize,
     },
     /// The time since the previous row is too long: what happened in it is unknown.
     #[error(
@@ -128,14 +145,33 @@ pub enum RowError {
     },
 }
 
+/// Bodies that may have a sensor, in words: the fixels, and the fingers of a hand of several.
+pub fn counted_bodies(fixels: usize, fingers: usize) -> String {
+    let fixels = counted(fixels as u64, "fixel");
+    match fingers {
+        1 => fixels,
+        _ => format!("{fixels} and {}", counted(fingers as u64, "finger")),
+    }
+}
+
 impl Row {
     /// Refuses a row that no tracker can use.
-    pub(crate) fn check(&self, fixels: usize) -> Result<(), RowError> {
+    pub(crate) fn check(&self, scene: &Scene) -> Result<(), RowError> {
         let time = self.time;
         if time.is_nan() || time.abs() > LATEST {
             return Err(RowError::Time { time });
         }
-        for (body, pose) in [("object", self.object), ("pusher", self.pusher)] {
+        let (found, fingers) = (self.other_fingers.len(), scene.pusher.fingers.len());
+        if found >= fingers {
+            return Err(RowError::Fingers {
+                time,
+                found,
+                fingers: fingers - 1,
+            });
+        }
+        let others = self.other_fingers.iter().map(|pose| ("finger", *pose));
+        let bodies = [("object", self.object), ("pusher", self.pusher)];
+        for (body, pose) in bodies.into_iter().chain(others) {
             let Some(pose) = pose else { continue };
             if !pose.is_finite() {
                 return Err(RowError::Pose { body, time, pose });
@@ -152,13 +188,21 @@ impl Row {
             return Err(RowError::Covariance { time, covariance });
         }
         let sensors = self.tactile.len();
-        if sensors > fixels {
+        if sensors > scene.sensors() {
             return Err(RowError::Sensors {
                 time,
                 sensors,
-                fixels,
+                fixels: scene.fixels.len(),
+                fingers,
             });
         }
         Ok(())
+    }
+
+    /// Poses of the scene's fingers.
+    pub(crate) fn fingers(&self, scene: &Scene) -> impl Iterator<Item = Option<Pose>> {
+        let others = (1..scene.pusher.fingers.len())
+            .map(|i| self.other_fingers.get(i - 1).copied().flatten());
+        std::iter::once(self.pusher).chain(others)
     }
 }

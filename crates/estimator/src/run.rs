@@ -246,6 +246,9 @@ impl PreparedLog<'_> {
         to.object = self.visible(row);
         to.object_covariance = self.covariance(row);
         to.pusher = self.log.pusher[row];
+        to.other_fingers.clear();
+        let others = self.log.other_fingers.iter().map(|poses| poses[row]);
+        to.other_fingers.extend(others);
         to.force = self.log.force.get(row).copied().flatten();
         to.tactile.clear();
         if tactile == TactileUse::Used {

@@ -154,7 +154,7 @@ impl Setup {
     /// Standard deviation (rad) of the pusher's angle about its logged one, on a rig of nominal
     /// roughness. It is 0 if turning the pusher changes nothing.
     pub(crate) fn pusher_turn(&self) -> f64 {
-        let parts = self.scene.pusher.shape.parts();
+        let parts = self.scene.pusher.fingers[0].parts();
         let round = matches!(parts, [Part::Disc { centre, .. }] if *centre == [0.0, 0.0]);
         let camera = self.camera.as_ref().filter(|_| !round);
         camera.map_or(0.0, |camera| camera.pusher_orientation_std)

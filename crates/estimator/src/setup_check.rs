@@ -3,7 +3,7 @@
 //! A scene file's numbers are checked at their place when it is read. A program may put any numbers
 //! into a setup.
 
-use stickslip_dynamics::{Feet, Friction, Scene};
+use stickslip_dynamics::{Feet, Friction, Scene, Shape};
 
 use crate::range::{Rule, SetupError, Unit};
 use crate::setup::{Camera, FilterSettings, ForceSensor, Limits, Setup, Tactile};
@@ -49,7 +49,6 @@ fn scene(scene: &Scene) -> Vec<Number> {
     use Rule::{Finite, Positive, PositiveOrInfinite};
     let stall = scene.pusher.stall_force.unwrap_or(f64::INFINITY);
     let size = scene.object.shape.bounding_radius();
-    let pusher = scene.pusher.shape.bounding_radius();
     let mut numbers = vec![
         (
             "scene.gravity",
@@ -76,18 +75,14 @@ fn scene(scene: &Scene) -> Vec<Number> {
             Unit::Metre,
         ),
         (
-            "the radius of scene.pusher.shape",
-            pusher,
-            Positive,
-            Unit::Metre,
-        ),
-        (
             "scene.pusher.stall_force",
             stall,
             PositiveOrInfinite,
             Unit::Newton,
         ),
     ];
+    let fingers = scene.pusher.fingers.iter().map(Shape::bounding_radius);
+    numbers.extend(fingers.map(|radius| ("the radius of a finger", radius, Positive, Unit::Metre)));
     numbers.extend(friction(&scene.nominal));
     if let Feet::Known { positions, loads } = &scene.feet {
         let positions = positions.iter().flatten();

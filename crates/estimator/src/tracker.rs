@@ -2,7 +2,7 @@
 
 use std::num::NonZero;
 
-use stickslip_dynamics::StepInput;
+use stickslip_dynamics::{MOST_FINGERS, StepInput};
 
 use crate::diagnosis::{Finding, collapsed, left_out_poses};
 use crate::error::RunError;
@@ -18,12 +18,14 @@ use crate::particle::transition::step_plan::Drive;
 use crate::pose_clock::PoseClock;
 use crate::pusher::causal::CausalTrack;
 use crate::pusher::schedule::split;
-use crate::pusher::tracked_pose::{TrackedPose, motion, step_length};
+use crate::pusher::tracked_pose::{
+    Directions, TrackedPose, keep_directions, motion, moves, step_length,
+};
 use crate::row::{LONGEST_PAUSE, Row, RowError};
 use crate::setup::{Camera, Setup};
 use crate::tuning::SHORTEST_STEP;
 
-/// Direction in which a pusher that has not moved yet may yield.
+/// Direction in which a finger that has not moved yet may yield.
 const FIRST_DIRECTION: [f64; 2] = [1.0, 0.0];
 
 /// Largest number of substeps from row to row.
@@ -145,12 +147,15 @@ pub struct Tracker<'o> {
     camera: Camera,
     options: TrackerOptions,
     observer: Option<&'o dyn Observer>,
-    pusher: CausalTrack,
+    /// Track of each finger.
+    fingers: Vec<CausalTrack>,
     /// Clock of the pusher's poses, from the first row on.
     pusher_clock: Option<PoseClock>,
-    /// The pusher at the latest step's end.
-    tracked: Option<TrackedPose>,
-    direction: [f64; 2],
+    /// The fingers at the latest row.
+    latest: Vec<Option<TrackedPose>>,
+    /// The fingers at the latest step's end.
+    tracked: Vec<Option<TrackedPose>>,
+    directions: Directions,
     substeps: Vec<StepInput>,
     /// Time of the latest row (s).
     time: Option<f64>,
@@ -195,15 +200,17 @@ impl<'o> Tracker<'o> {
         setup.check()?;
         options.check()?;
         let camera = setup.camera.ok_or(RunError::NoCamera)?;
+        let fingers = setup.scene.pusher.fingers.len();
         let tracker = Self {
             setup: setup.clone(),
             camera,
             options: *options,
             observer,
-            pusher: CausalTrack::new(Some(&camera))?,
+            fingers: vec![CausalTrack::new(Some(&camera))?; fingers],
             pusher_clock: None,
-            tracked: None,
-            direction: FIRST_DIRECTION,
+            latest: vec![None; fingers],
+            tracked: vec![None; fingers],
+            directions: [FIRST_DIRECTION; MOST_FINGERS],
             substeps: Vec::new(),
             time: None,
             stepped: None,
@@ -255,7 +262,7 @@ impl<'o> Tracker<'o> {
         row: &Row,
         particles: impl FnOnce(StepSize) -> NonZero<u32>,
     ) -> Result<&EstimateRow, RowError> {
-        row.check(self.setup.scene.fixels.len())?;
+        row.check(&self.setup.scene)?;
         match self.time {
             Some(latest) if row.time <= latest => return self.push_late(row, latest),
             Some(from) if row.time - from > LONGEST_PAUSE => {
@@ -265,13 +272,17 @@ impl<'o> Tracker<'o> {
         }
 
         // the pusher, and the substeps over which it drives the object
-        let tracked = self.pusher.push(row.time, row.pusher);
-        let moves = tracked.is_some_and(|tracked| tracked.moves());
+        let tracks = self.fingers.iter_mut().zip(&mut self.latest);
+        for ((track, latest), pose) in tracks.zip(row.fingers(&self.setup.scene)) {
+            *latest = track.push(row.time, pose);
+        }
+        let moves = moves(&self.latest);
         let clock = self.pusher_clock.get_or_insert(PoseClock::new(row.time));
-        let overdue = clock.is_dark(row.time, row.pusher.is_some());
+        let seen = row.fingers(&self.setup.scene).all(|pose| pose.is_some());
+        let overdue = clock.is_dark(row.time, seen);
         self.time = Some(row.time);
         self.seen += usize::from(row.object.is_some());
-        self.plan_substeps(row.time, tracked);
+        self.plan_substeps(row.time);
 
         // the particles, which begin at the first pose of the object
         match (&mut self.filter, row.object) {
@@ -315,25 +326,24 @@ impl<'o> Tracker<'o> {
         Ok(self.estimate())
     }
 
-    /// Writes the substeps from the end of the latest step to `time`, where the pusher is `next`.
-    /// There is none if `time` is too near.
-    fn plan_substeps(&mut self, time: f64, next: Option<TrackedPose>) {
+    /// Writes the substeps from the end of the latest step to `time`, where the fingers are the
+    /// latest ones. There is none if `time` is too near.
+    fn plan_substeps(&mut self, time: f64) {
         self.substeps.clear();
         let Some(from) = self.stepped else {
-            (self.stepped, self.tracked) = (Some(time), next);
+            self.stepped = Some(time);
+            self.tracked.clone_from(&self.latest);
             return;
         };
         let h = time - from;
         if h < SHORTEST_STEP {
             return;
         }
-        let before = std::mem::replace(&mut self.tracked, next);
         self.stepped = Some(time);
-        let h = step_length(next, h);
-        let motion = motion(before, next, h, self.direction);
-        if let Some(motion) = &motion {
-            self.direction = motion.direction;
-        }
+        let h = step_length(&self.latest, h);
+        let motion = motion(&self.tracked, &self.latest, h, &self.directions);
+        self.tracked.clone_from(&self.latest);
+        keep_directions(motion.as_ref(), &mut self.directions);
         self.substeps
             .extend(split(h, motion, self.options.substeps));
     }
@@ -383,7 +393,7 @@ impl<'o> Tracker<'o> {
     /// Number of pusher poses that counted as missing, since the pusher could not have come there
     /// in time (docs/method.md, "The pusher's track").
     pub fn pusher_poses_left_out(&self) -> u32 {
-        self.pusher.left_out()
+        self.fingers.iter().map(CausalTrack::left_out).sum()
     }
 
     /// Finds reasons to doubt the estimates so far: collapses, and pusher poses that counted as

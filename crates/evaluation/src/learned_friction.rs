@@ -195,7 +195,7 @@ fn touches(probability: Option<f64>) -> bool {
 }
 
 fn fixels(row: &EstimateRow) -> impl Iterator<Item = Option<f64>> {
-    row.contact_fixels.iter().flatten().copied().map(Some)
+    row.contact_others.iter().flatten().copied().map(Some)
 }
 
 #[cfg(test)]
@@ -229,7 +229,7 @@ mod tests {
                 ..Spread::default()
             }),
             contact_pusher: Some(touches[0]),
-            contact_fixels: Some(vec![0.0, touches[1]]),
+            contact_others: Some(vec![0.0, touches[1]]),
             visual,
             ..EstimateRow::default()
         }

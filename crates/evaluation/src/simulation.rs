@@ -188,6 +188,7 @@ fn log(trace: &Trace, measurements: &[CameraMeasurement]) -> Log {
         object: measurements.iter().map(|seen| Some(seen.object)).collect(),
         object_covariance: Vec::new(),
         pusher: measurements.iter().map(|seen| Some(seen.pusher)).collect(),
+        other_fingers: Vec::new(),
         tactile: (0..sensors).map(|k| reading(k).collect()).collect(),
         force: Vec::new(),
     }
@@ -246,7 +247,7 @@ fn facts(trace: &Trace, known: &TruthFacts, options: &SimulationOptions) -> Trut
         mu_p: Some(trace.friction.mu_p),
         mu_f: Some(trace.friction.mu_f),
         d_tri: Some(trace.friction.d_tri),
-        first_pusher_contact: trace.first_contact(Body::Pusher),
+        first_pusher_contact: trace.first_contact(Body::Finger(0)),
         first_fixel_contacts: (0..fixels(trace))
             .map(|j| trace.first_contact(Body::Fixel(j)))
             .collect(),

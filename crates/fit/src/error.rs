@@ -28,6 +28,14 @@ pub enum FitError {
         /// All that are.
         known: String,
     },
+    /// A hand of several fingers.
+    #[error(
+        "{push}: the scene has [[finger]] tables; a fit learns from one pusher. Leave it out of the fit"
+    )]
+    Hand {
+        /// Its name.
+        push: String,
+    },
     /// A push in which nothing touches the object.
     #[error("{push}: {found}. It is no push: leave it out of the fit")]
     Untouched {

@@ -225,7 +225,7 @@ impl Parameter {
             };
         }
         object.apply(&mut setup.scene.object.shape)?;
-        pusher.apply(&mut setup.scene.pusher.shape)
+        pusher.apply(&mut setup.scene.pusher.fingers[0])
     }
 }
 

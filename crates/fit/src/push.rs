@@ -56,6 +56,9 @@ pub(crate) struct Instant {
 impl PreparedPush {
     pub fn new(push: Push) -> Result<Self, FitError> {
         let Push { name, setup, log } = &push;
+        if setup.scene.pusher.fingers.len() > 1 {
+            return Err(FitError::Hand { push: name.clone() });
+        }
         if let Some(finding) = untouched(setup, log) {
             let (push, found) = (name.clone(), finding.found);
             return Err(FitError::Untouched { push, found });
@@ -156,7 +159,7 @@ fn travelled(schedule: &Schedule, rows: usize, radius: f64) -> Vec<f64> {
                 let Some(pusher) = &input.pusher else {
                     continue;
                 };
-                let twist = pusher.twist;
+                let twist = pusher[0].twist;
                 let speed = libm::hypot(libm::hypot(twist.vx, twist.vy), radius * twist.omega);
                 sum += speed * input.h;
             }

@@ -59,7 +59,7 @@ impl Fit {
             edit.set_shape("object", &setup.scene.object.shape);
         }
         if is(|p| matches!(p, Parameter::PusherX | Parameter::PusherY)) {
-            edit.set_shape("pusher", &setup.scene.pusher.shape);
+            edit.set_shape("pusher", &setup.scene.pusher.fingers[0]);
         }
         if let (Feet::Known { positions, loads }, true) = (
             setup.scene.feet,

@@ -19,14 +19,14 @@ pub(crate) const OF_ROW: [&str; 8] = [
 const OF_BODY: [&str; 3] = ["stick", "left", "right"];
 
 /// Number of columns.
-pub(crate) const fn count(fixels: usize) -> usize {
-    OF_ROW.len() + OF_BODY.len() * (1 + fixels)
+pub(crate) const fn count(others: usize) -> usize {
+    OF_ROW.len() + OF_BODY.len() * (1 + others)
 }
 
 /// Their names, in the order of the file.
-pub(crate) fn names(fixels: usize) -> impl Iterator<Item = String> {
-    let fixels = (1..=fixels).map(|k| k.to_string());
-    let bodies = std::iter::once("pusher".to_owned()).chain(fixels);
+pub(crate) fn names(others: usize) -> impl Iterator<Item = String> {
+    let others = (1..=others).map(|k| k.to_string());
+    let bodies = std::iter::once("pusher".to_owned()).chain(others);
     let of_bodies = bodies.flat_map(|body| OF_BODY.map(|how| format!("{how}_{body}")));
     OF_ROW.map(str::to_owned).into_iter().chain(of_bodies)
 }
@@ -35,7 +35,7 @@ pub(crate) fn names(fixels: usize) -> impl Iterator<Item = String> {
 ///
 /// # Panics
 /// If the row says how the object slips on another number of bodies than there are.
-pub(crate) fn numbers(row: &EstimateRow, fixels: usize) -> Vec<Option<f64>> {
+pub(crate) fn numbers(row: &EstimateRow, others: usize) -> Vec<Option<f64>> {
     let likeliest = row.modes.first();
     let mode = likeliest.map(|mode| {
         let count = row.modes.len() as f64;
@@ -51,14 +51,14 @@ pub(crate) fn numbers(row: &EstimateRow, fixels: usize) -> Vec<Option<f64>> {
     numbers.extend(optional(mode));
     match &row.slip {
         Some(bodies) => {
-            assert_eq!(bodies.len(), 1 + fixels, "the pusher and every fixel");
+            assert_eq!(bodies.len(), 1 + others, "the pusher and every fixel");
             let of_bodies = bodies.iter().flat_map(|slip| {
                 let ContactSlip { stick, left, right } = *slip;
                 [stick, left, right]
             });
             numbers.extend(of_bodies.map(Some));
         }
-        None => numbers.resize(count(fixels), None),
+        None => numbers.resize(count(others), None),
     }
     numbers
 }

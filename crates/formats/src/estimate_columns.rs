@@ -12,18 +12,18 @@ use crate::named_columns::{ColumnError, NamedColumns};
 ///
 /// ```
 /// # use stickslip::{Estimate, EstimateRow};
-/// let estimate = Estimate { time: vec![0.5], rows: vec![EstimateRow::default()], fixels: 1, has_tripod: true };
+/// let estimate = Estimate { time: vec![0.5], rows: vec![EstimateRow::default()], others: 1, has_tripod: true };
 /// let columns = stickslip_formats::estimate_columns(&estimate);
 /// assert_eq!(columns[0], ("time".to_owned(), vec![0.5]));
 /// assert!(columns[1].0 == "x" && columns[1].1[0].is_nan());
 /// ```
 ///
 /// # Panics
-/// If `time` and `rows` differ in length, or a row has not one contact probability per fixel.
+/// If `time` and `rows` differ in length, or a row has not one contact probability per fixel and other finger.
 #[must_use]
 pub fn estimate_columns(estimate: &Estimate) -> Vec<(String, Vec<f64>)> {
     assert_eq!(estimate.time.len(), estimate.rows.len(), "one time per row");
-    let names = header(estimate.fixels).into_iter();
+    let names = header(estimate.others).into_iter();
     let mut columns: Vec<(String, Vec<f64>)> = names
         .map(|name| (name, Vec::with_capacity(estimate.rows.len())))
         .collect();
@@ -81,9 +81,9 @@ fn push_row(numbers: &mut Vec<f64>, row: &EstimateRow, estimate: &Estimate) {
     push(numbers, row.twist.map(|v| [v.vx, v.vy, v.omega]));
     push(numbers, row.friction.map(|f| friction_numbers(f, tripod)));
     push(numbers, row.contact_pusher.map(|contact| [contact]));
-    match &row.contact_fixels {
+    match &row.contact_others {
         Some(contacts) => numbers.extend(contacts),
-        None => numbers.extend(std::iter::repeat_n(f64::NAN, estimate.fixels)),
+        None => numbers.extend(std::iter::repeat_n(f64::NAN, estimate.others)),
     }
     push(numbers, row.spread.map(|std| pose_numbers(std.pose)));
     let spread = row.spread.and_then(|std| std.friction);
@@ -98,7 +98,7 @@ fn push_row(numbers: &mut Vec<f64>, row: &EstimateRow, estimate: &Estimate) {
     push(numbers, row.failed.map(|count| [f64::from(count)]));
     let cross = row.spread.and_then(|spread| spread.cross);
     push(numbers, cross.map(cross_numbers));
-    let belief = belief_columns::numbers(row, estimate.fixels).into_iter();
+    let belief = belief_columns::numbers(row, estimate.others).into_iter();
     numbers.extend(belief.map(|number| number.unwrap_or(f64::NAN)));
 }
 

@@ -22,7 +22,7 @@ use crate::csv_error::{CsvError, CsvProblem};
 use crate::csv_table::{CsvTable, Row};
 use crate::number;
 
-const BEFORE_FIXELS: [&str; 12] = [
+const BEFORE_OTHERS: [&str; 12] = [
     "time",
     "x",
     "y",
@@ -36,7 +36,7 @@ const BEFORE_FIXELS: [&str; 12] = [
     "d_tri",
     "contact_pusher",
 ];
-const AFTER_FIXELS: [&str; 15] = [
+const AFTER_OTHERS: [&str; 15] = [
     "std_x",
     "std_y",
     "std_theta",
@@ -55,16 +55,16 @@ const AFTER_FIXELS: [&str; 15] = [
 ];
 
 /// Columns that came later, all at the end; files of earlier versions end after this many of them.
-fn later_counts(fixels: usize) -> [usize; 4] {
-    [0, 1, 4, 4 + belief_columns::count(fixels)]
+fn later_counts(others: usize) -> [usize; 4] {
+    [0, 1, 4, 4 + belief_columns::count(others)]
 }
 
 /// Columns that files of every version have.
-fn oldest_count(fixels: usize) -> usize {
-    BEFORE_FIXELS.len() + fixels + AFTER_FIXELS.len() - 4
+fn oldest_count(others: usize) -> usize {
+    BEFORE_OTHERS.len() + others + AFTER_OTHERS.len() - 4
 }
 
-/// Column numbers; those after the fixels' contacts count from the first one after them.
+/// Column numbers; those after the other bodies' contacts count from the first one after them.
 const TIME: usize = 0;
 const POSE: [usize; 3] = [1, 2, 3];
 const TWIST: [usize; 3] = [4, 5, 6];
@@ -78,12 +78,12 @@ const CONTACT_PUSHER: usize = 11;
 /// Those of `writer`.
 ///
 /// # Panics
-/// If `time` and `rows` differ in length, or a row has not one contact probability per fixel.
+/// If `time` and `rows` differ in length, or a row has not one contact probability per fixel and other finger.
 pub fn write_estimate(mut writer: impl Write, estimate: &Estimate) -> std::io::Result<()> {
     assert_eq!(estimate.time.len(), estimate.rows.len(), "one time per row");
-    writeln!(writer, "{}", header(estimate.fixels).join(","))?;
+    writeln!(writer, "{}", header(estimate.others).join(","))?;
     let columns = EstimateColumns {
-        fixels: estimate.fixels,
+        others: estimate.others,
         has_tripod: estimate.has_tripod,
     };
     for (time, row) in estimate.time.iter().zip(&estimate.rows) {
@@ -107,16 +107,16 @@ pub fn write_estimate(mut writer: impl Write, estimate: &Estimate) -> std::io::R
 pub fn read_estimate(reader: impl Read, name: &str) -> Result<Estimate, CsvError> {
     let table = CsvTable::read(reader, name)?;
     let mut estimate = Estimate {
-        fixels: check_header(&table)?,
+        others: check_header(&table)?,
         has_tripod: true,
         ..Estimate::default()
     };
-    let later = table.columns().len() - oldest_count(estimate.fixels);
+    let later = table.columns().len() - oldest_count(estimate.others);
     let mut tripod = None;
     for row in table.rows()? {
         let reader = RowReader {
             row: &row?,
-            fixels: estimate.fixels,
+            others: estimate.others,
             later,
         };
         estimate
@@ -131,40 +131,40 @@ pub fn read_estimate(reader: impl Read, name: &str) -> Result<Estimate, CsvError
 /// Columns that an estimate has, and those that are filled.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct EstimateColumns {
-    /// Number of fixels.
-    pub fixels: usize,
+    /// Number of fixels and other fingers.
+    pub others: usize,
     /// True if d_tri is a parameter.
     pub has_tripod: bool,
 }
 
 /// The names of the columns, in the order of the file.
-pub(crate) fn header(fixels: usize) -> Vec<String> {
-    let contacts = (1..=fixels).map(|k| format!("contact_{k}"));
-    BEFORE_FIXELS
+pub(crate) fn header(others: usize) -> Vec<String> {
+    let contacts = (1..=others).map(|k| format!("contact_{k}"));
+    BEFORE_OTHERS
         .map(str::to_owned)
         .into_iter()
         .chain(contacts)
-        .chain(AFTER_FIXELS.map(str::to_owned))
-        .chain(belief_columns::names(fixels))
+        .chain(AFTER_OTHERS.map(str::to_owned))
+        .chain(belief_columns::names(others))
         .collect()
 }
 
-/// The number of fixels, if the header is that of an estimate.
+/// The number of fixels and other fingers, if the header is that of an estimate.
 fn check_header(table: &CsvTable) -> Result<usize, CsvError> {
     let is_contact = |name: &String| {
         name.strip_prefix("contact_")
             .is_some_and(|k| k.bytes().all(|c| c.is_ascii_digit()))
     };
-    let fixels = table
+    let others = table
         .columns()
         .iter()
         .filter(|name| is_contact(name))
         .count();
-    let expected = header(fixels);
+    let expected = header(others);
     // files of earlier versions end earlier
-    let oldest = oldest_count(fixels);
+    let oldest = oldest_count(others);
     let later = table.columns().len().saturating_sub(oldest);
-    let counts = later_counts(fixels).into_iter();
+    let counts = later_counts(others).into_iter();
     let begun = counts.filter(|count| *count >= later).min();
     for name in &expected[..oldest + begun.unwrap_or(0)] {
         table.require(name)?;
@@ -187,16 +187,16 @@ fn check_header(table: &CsvTable) -> Result<usize, CsvError> {
             }
         }
     }
-    Ok(fixels)
+    Ok(others)
 }
 
 /// The cells of a row, one per column.
 pub(crate) fn cells(time: f64, row: &EstimateRow, columns: EstimateColumns) -> Vec<String> {
     assert!(
-        row.contact_fixels
+        row.contact_others
             .as_ref()
-            .is_none_or(|contacts| contacts.len() == columns.fixels),
-        "one contact probability per fixel"
+            .is_none_or(|contacts| contacts.len() == columns.others),
+        "one contact probability per fixel and other finger"
     );
     let mut cells = vec![number::text(time)];
     push(&mut cells, row.pose.map(pose_numbers));
@@ -206,9 +206,9 @@ pub(crate) fn cells(time: f64, row: &EstimateRow, columns: EstimateColumns) -> V
     );
     push_friction(&mut cells, row.friction, columns.has_tripod);
     push(&mut cells, row.contact_pusher.map(|contact| [contact]));
-    match &row.contact_fixels {
+    match &row.contact_others {
         Some(contacts) => cells.extend(contacts.iter().copied().map(number::text)),
-        None => cells.extend(vec![String::new(); columns.fixels]),
+        None => cells.extend(vec![String::new(); columns.others]),
     }
     push(
         &mut cells,
@@ -230,7 +230,7 @@ pub(crate) fn cells(time: f64, row: &EstimateRow, columns: EstimateColumns) -> V
     }
     let cross = row.spread.and_then(|spread| spread.cross);
     push(&mut cells, cross.map(cross_numbers));
-    let belief = belief_columns::numbers(row, columns.fixels).into_iter();
+    let belief = belief_columns::numbers(row, columns.others).into_iter();
     cells.extend(belief.map(|number| number.map_or(String::new(), number::text)));
     cells
 }
@@ -256,10 +256,10 @@ fn pose_numbers(pose: Pose) -> [f64; 3] {
     [pose.x, pose.y, pose.theta]
 }
 
-/// One line of the file with the number of fixels, which says where the columns after them stand.
+/// One line of the file with the number of other bodies, which says where the columns after them stand.
 struct RowReader<'r, 't> {
     row: &'r Row<'t>,
-    fixels: usize,
+    others: usize,
     /// Number of the columns that came later.
     later: usize,
 }
@@ -268,9 +268,9 @@ impl RowReader<'_, '_> {
     /// `tripod`: whether the rows so far have a d_tri, `None` until one says.
     fn read(&self, tripod: &mut Option<bool>) -> Result<EstimateRow, CsvError> {
         let row = self.row;
-        let contacts: Vec<usize> = (1..=self.fixels).map(|k| CONTACT_PUSHER + k).collect();
+        let contacts: Vec<usize> = (1..=self.others).map(|k| CONTACT_PUSHER + k).collect();
         let contact_pusher = row.number(CONTACT_PUSHER)?;
-        let contact_fixels = if self.fixels == 0 {
+        let contact_others = if self.others == 0 {
             contact_pusher.map(|_| Vec::new())
         } else {
             row.group(&contacts)?
@@ -284,7 +284,7 @@ impl RowReader<'_, '_> {
             }),
             friction: self.friction(FRICTION, D_TRI, tripod)?,
             contact_pusher,
-            contact_fixels,
+            contact_others,
             spread: self.spread(tripod)?,
             ess: row.number(self.after(7))?,
             resampled: row.binary(self.after(8))?,
@@ -311,7 +311,7 @@ impl RowReader<'_, '_> {
         self.row
             .group(&[19, 20, 21, 22].map(|index| self.after(index)))?;
         let first = self.after(15 + belief_columns::OF_ROW.len());
-        let of_bodies: Vec<usize> = (first..first + 3 * (1 + self.fixels)).collect();
+        let of_bodies: Vec<usize> = (first..first + 3 * (1 + self.others)).collect();
         into.slip = self.row.group(&of_bodies)?.map(|numbers| {
             let slips = numbers.chunks(3).map(|of_body| ContactSlip {
                 stick: of_body[0],
@@ -346,9 +346,9 @@ impl RowReader<'_, '_> {
         }))
     }
 
-    /// Index of a column of [`AFTER_FIXELS`].
+    /// Index of a column of [`AFTER_OTHERS`].
     fn after(&self, index: usize) -> usize {
-        BEFORE_FIXELS.len() + self.fixels + index
+        BEFORE_OTHERS.len() + self.others + index
     }
 
     fn pose(&self, columns: [usize; 3]) -> Result<Option<Pose>, CsvError> {

@@ -19,14 +19,14 @@ pub struct Pace {
 /// the keys `particles` and `missed` come after them.
 ///
 /// # Panics
-/// If the row has not one contact probability per fixel of `setup`.
+/// If the row has not one contact probability per fixel and other finger and other finger of `setup`.
 #[must_use]
 pub fn estimate_json(time: f64, row: &EstimateRow, setup: &Setup, pace: Option<Pace>) -> String {
     let columns = EstimateColumns {
-        fixels: setup.scene.fixels.len(),
+        others: setup.scene.others(),
         has_tripod: setup.has_tripod(),
     };
-    let named = header(columns.fixels)
+    let named = header(columns.others)
         .into_iter()
         .zip(cells(time, row, columns));
     let entries = named.map(|(name, cell)| {
@@ -56,7 +56,7 @@ mod tests {
         let line = estimate_json(0.1, &row, &setup, None);
         let value: serde_json::Value = serde_json::from_str(&line).expect("JSON");
         let object = value.as_object().expect("an object");
-        assert_eq!(object.len(), 38 + 4 * setup.scene.fixels.len());
+        assert_eq!(object.len(), 38 + 4 * setup.scene.others());
         let pace = Pace {
             particles: 64,
             missed: 3,

@@ -2,7 +2,7 @@
 
 use stickslip::{Log, Setup};
 
-use crate::log_csv::{SensorError, check_sensors};
+use crate::log_csv::{BodiesError, check_bodies};
 use crate::truth_csv::Truth;
 use crate::truth_json::TruthFacts;
 
@@ -23,14 +23,14 @@ impl Experiment {
     /// The four together.
     ///
     /// # Errors
-    /// The log has more sensors than the scene has fixels.
+    /// The log has other fingers than the scene, or more sensors than the scene has bodies for them.
     pub fn new(
         setup: Setup,
         log: Log,
         truth: Option<Truth>,
         facts: TruthFacts,
-    ) -> Result<Self, SensorError> {
-        check_sensors(&log, &setup)?;
+    ) -> Result<Self, BodiesError> {
+        check_bodies(&log, &setup)?;
         Ok(Self {
             setup,
             log,

@@ -42,7 +42,7 @@ pub use experiment::Experiment;
 pub use frames_csv::{FrameList, read_frames, write_frames};
 pub use left_out::{LeftOut, Reason};
 pub use log_columns::{log_columns, log_of_columns};
-pub use log_csv::{SensorError, check_sensors, read_log, write_log};
+pub use log_csv::{BodiesError, check_bodies, read_log, write_log};
 pub use log_mcap::{
     BagCameraInfo, BagImage, BagInfo, BagOptions, BagPart, BagPicture, CameraMapping,
     CameraRecording, CameraTopics, Frames, LogTime, LogTimeError, McapError, McapPlace,

@@ -4,8 +4,8 @@ use stickslip::{Log, PoseCovariance};
 use stickslip_dynamics::Pose;
 
 use crate::log_csv::{
-    COVARIANCE, FORCE, OBJECT, PUSHER, TACTILE, covariance, covariance_numbers, forget_empty,
-    header,
+    COVARIANCE, FORCE, OBJECT, PUSHER, TACTILE, covariance, covariance_numbers, finger_names,
+    forget_empty, header,
 };
 use crate::log_warning::LogWarning;
 use crate::named_columns::{ColumnError, NamedColumns};
@@ -52,6 +52,7 @@ pub fn log_columns(log: &Log) -> Vec<(String, Vec<f64>)> {
         .into_iter()
         .chain(of_poses(&log.object))
         .chain(of_poses(&log.pusher))
+        .chain(log.other_fingers.iter().flat_map(|poses| of_poses(poses)))
         .chain(tactile)
         .chain(force)
         .chain(covariance);
@@ -88,6 +89,7 @@ pub fn log_of_columns(
         (0..time.len()).map(pose).collect::<Result<Vec<_>, _>>()
     };
     let (object, pusher) = (poses(OBJECT)?, poses(PUSHER)?);
+    let fingers = finger_names(|name| columns.find(name).is_some()).iter();
     let sensors = sensors(columns)?;
     let tactile = sensors.iter().map(|sensor| readings(columns, sensor));
     let force = match columns.find_all(FORCE)? {
@@ -110,6 +112,9 @@ pub fn log_of_columns(
         object,
         object_covariance,
         pusher,
+        other_fingers: fingers
+            .map(|names| poses(*names))
+            .collect::<Result<_, _>>()?,
         tactile: tactile.collect::<Result<_, _>>()?,
         force,
     };

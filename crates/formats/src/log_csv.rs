@@ -1,11 +1,12 @@
 //! `log.csv`, one recorded experiment: [`read_log`], [`write_log`], and the check of its sensors
-//! against the scene's fixels: [`check_sensors`].
+//! and fingers
+//! against the scene's: [`check_bodies`].
 //!
 //! The columns are found by name, in any order:
 //!
 //! ```text
 //! time,object_x,object_y,object_theta,pusher_x,pusher_y,pusher_theta
-//! [,tactile_1,...][,pusher_force_x,pusher_force_y][,object_var_x,...]
+//! [,finger_1_x,finger_1_y,finger_1_theta,...][,tactile_1,...][,pusher_force_x,pusher_force_y][,object_var_x,...]
 //! ```
 //!
 //! An empty cell is a missing measurement.
@@ -13,8 +14,8 @@
 use std::collections::BTreeSet;
 use std::io::{Read, Write};
 
-use stickslip::{Log, PoseCovariance, Rule, Setup, Unit, counted};
-use stickslip_dynamics::Pose;
+use stickslip::{Log, PoseCovariance, Rule, Setup, Unit, counted, counted_bodies};
+use stickslip_dynamics::{MOST_FINGERS, Pose};
 
 use crate::csv_error::{CsvProblem, LogError};
 use crate::csv_table::{CsvTable, Row};
@@ -23,6 +24,12 @@ use crate::number;
 
 pub(crate) const OBJECT: [&str; 3] = ["object_x", "object_y", "object_theta"];
 pub(crate) const PUSHER: [&str; 3] = ["pusher_x", "pusher_y", "pusher_theta"];
+/// Of the other fingers of a hand.
+pub(crate) const FINGERS: [[&str; 3]; MOST_FINGERS - 1] = [
+    ["finger_1_x", "finger_1_y", "finger_1_theta"],
+    ["finger_2_x", "finger_2_y", "finger_2_theta"],
+    ["finger_3_x", "finger_3_y", "finger_3_theta"],
+];
 pub(crate) const FORCE: [&str; 2] = ["pusher_force_x", "pusher_force_y"];
 pub(crate) const COVARIANCE: [&str; 6] = [
     "object_var_x",
@@ -34,17 +41,36 @@ pub(crate) const COVARIANCE: [&str; 6] = [
 ];
 pub(crate) const TACTILE: &str = "tactile_";
 
-/// A log has more tactile sensors than its scene has fixels.
+/// A log does not go with its scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error(
-    "the log has {} and the scene {}; sensor k is the k-th fixel. Add the missing [[fixel]] tables or remove the columns from tactile_{} on",
-    counted(*.sensors as u64, "tactile sensor"), counted(*.fixels as u64, "fixel"), .fixels + 1
-)]
-pub struct SensorError {
-    /// Tactile columns of the log.
-    pub sensors: usize,
-    /// Fixels of the scene.
-    pub fixels: usize,
+#[non_exhaustive]
+pub enum BodiesError {
+    /// More tactile sensors than the scene has fixels, or fixels and fingers of a hand.
+    #[error(
+        "the log has {} and the scene {}; sensor k is the k-th fixel, or behind them a finger of a hand. Add the missing [[fixel]] tables or remove the columns from tactile_{} on",
+        counted(*.sensors as u64, "tactile sensor"), counted_bodies(*.fixels, *.fingers), .most + 1
+    )]
+    Sensors {
+        /// Tactile columns of the log.
+        sensors: usize,
+        /// Fixels of the scene.
+        fixels: usize,
+        /// Fingers of the scene's pusher.
+        fingers: usize,
+        /// Most sensors.
+        most: usize,
+    },
+    /// Another number of fingers.
+    #[error(
+        "the log has poses of {} besides the pusher and the scene {}; [[finger]] k has its pose in the columns finger_k_x, finger_k_y and finger_k_theta. Give each its own",
+        counted(*.found as u64, "finger"), counted(*.fingers as u64, "[[finger]] table")
+    )]
+    Fingers {
+        /// Fingers of the log besides the pusher.
+        found: usize,
+        /// `[[finger]]` tables of the scene.
+        fingers: usize,
+    },
 }
 
 /// Positions of a log's columns.
@@ -52,6 +78,7 @@ struct Columns {
     time: usize,
     object: [usize; 3],
     pusher: [usize; 3],
+    fingers: Vec<[usize; 3]>,
     tactile: Vec<usize>,
     force: Option<[usize; 2]>,
     covariance: Option<[usize; 6]>,
@@ -75,6 +102,7 @@ pub fn read_log(reader: impl Read, name: &str) -> Result<(Log, Vec<LogWarning>),
     let table = CsvTable::read(reader, name)?;
     let columns = Columns::find(&table)?;
     let mut log = Log {
+        other_fingers: vec![Vec::new(); columns.fingers.len()],
         tactile: vec![Vec::new(); columns.tactile.len()],
         ..Log::default()
     };
@@ -132,17 +160,27 @@ pub(crate) fn covariance_numbers(covariance: &PoseCovariance) -> [f64; 6] {
     [x, y, theta, x_y, x_theta, y_theta]
 }
 
-/// Checks that the log has no more tactile sensors than the scene has fixels; fewer are allowed.
+/// Checks that the log has the scene's fingers, and no more tactile sensors than the scene has
+/// bodies for them; fewer are allowed.
 ///
 /// # Errors
-/// [`SensorError`] with both numbers.
-pub fn check_sensors(log: &Log, setup: &Setup) -> Result<(), SensorError> {
-    let (sensors, fixels) = (log.tactile.len(), setup.scene.fixels.len());
-    if sensors > fixels {
-        Err(SensorError { sensors, fixels })
-    } else {
-        Ok(())
+/// [`BodiesError`] with both numbers.
+pub fn check_bodies(log: &Log, setup: &Setup) -> Result<(), BodiesError> {
+    let scene = &setup.scene;
+    let (found, fingers) = (log.other_fingers.len(), scene.pusher.fingers.len() - 1);
+    if found != fingers {
+        return Err(BodiesError::Fingers { found, fingers });
     }
+    let (sensors, most) = (log.tactile.len(), scene.sensors());
+    if sensors > most {
+        return Err(BodiesError::Sensors {
+            sensors,
+            fixels: scene.fixels.len(),
+            fingers: fingers + 1,
+            most,
+        });
+    }
+    Ok(())
 }
 
 /// Writes a log; every number reads back to the same bits.
@@ -151,7 +189,7 @@ pub fn check_sensors(log: &Log, setup: &Setup) -> Result<(), SensorError> {
 /// Those of `writer`.
 ///
 /// # Panics
-/// If the columns differ in length.
+/// If the columns differ in length, or there are more fingers than a hand may have.
 pub fn write_log(mut writer: impl Write, log: &Log) -> std::io::Result<()> {
     assert_equal_columns(log);
 
@@ -170,6 +208,10 @@ pub(crate) fn assert_equal_columns(log: &Log) {
         log.tactile.iter().all(|column| column.len() == rows),
         "columns of equal length"
     );
+    assert!(
+        log.other_fingers.iter().all(|column| column.len() == rows),
+        "columns of equal length"
+    );
     for optional in [log.force.len(), log.object_covariance.len()] {
         assert!(optional == 0 || optional == rows, "columns of equal length");
     }
@@ -181,6 +223,10 @@ impl Columns {
             time: table.require("time")?,
             object: table.require_all(OBJECT)?,
             pusher: table.require_all(PUSHER)?,
+            fingers: finger_names(|name| table.find(name).is_some())
+                .iter()
+                .map(|names| table.require_all(*names))
+                .collect::<Result<_, _>>()?,
             tactile: tactile_columns(table)?,
             force: optional_columns(table, FORCE)?,
             covariance: optional_columns(table, COVARIANCE)?,
@@ -192,6 +238,9 @@ impl Columns {
             .push(row.time(self.time, log.time.last().copied())?);
         log.object.push(pose(row, self.object)?);
         log.pusher.push(pose(row, self.pusher)?);
+        for (poses, columns) in log.other_fingers.iter_mut().zip(&self.fingers) {
+            poses.push(pose(row, *columns)?);
+        }
         for (readings, column) in log.tactile.iter_mut().zip(&self.tactile) {
             readings.push(row.binary(*column)?);
         }
@@ -211,6 +260,7 @@ impl Columns {
             .object
             .iter()
             .chain(&self.pusher)
+            .chain(self.fingers.as_flattened())
             .chain(&self.tactile)
             .chain(optional)
             .copied()
@@ -233,6 +283,14 @@ impl Columns {
             }]
         }
     }
+}
+
+/// The columns of the fingers of which one is there: up to the last such finger.
+pub(crate) fn finger_names(is_there: impl Fn(&str) -> bool) -> &'static [[&'static str; 3]] {
+    let last = FINGERS
+        .iter()
+        .rposition(|names| names.iter().any(|name| is_there(name)));
+    &FINGERS[..last.map_or(0, |last| last + 1)]
 }
 
 /// The columns tactile_1 ... tactile_n; a gap in the numbers, a zero or a leading zero is an error.
@@ -314,7 +372,9 @@ pub(crate) fn header(log: &Log) -> Vec<String> {
     let covariance = COVARIANCE
         .into_iter()
         .filter(|_| !log.object_covariance.is_empty());
+    let fingers = &FINGERS[..log.other_fingers.len()];
     let poses = ["time"].into_iter().chain(OBJECT).chain(PUSHER);
+    let poses = poses.chain(fingers.as_flattened().iter().copied());
     poses
         .map(str::to_owned)
         .chain(tactile)
@@ -344,7 +404,9 @@ pub(crate) fn cells(log: &Log, row: usize) -> Vec<String> {
         .into_iter()
         .chain(pose_cells(log.object[row]))
         .chain(pose_cells(log.pusher[row]));
+    let fingers = log.other_fingers.iter().map(|poses| poses[row]);
     poses
+        .chain(fingers.flat_map(pose_cells))
         .chain(tactile)
         .chain(force.into_iter().flatten())
         .chain(covariance.into_iter().flatten())

@@ -4,6 +4,7 @@
 use std::io::{Seek, Write};
 
 use stickslip::{Log, Row};
+use stickslip_dynamics::Scene;
 
 use crate::log_csv::{cells, header};
 use crate::log_mcap::{LogMessages, McapWriteError, Topics};
@@ -12,6 +13,7 @@ use crate::log_mcap::{LogMessages, McapWriteError, Topics};
 pub struct CsvRecorder<W: Write> {
     writer: W,
     sensors: usize,
+    fingers: usize,
 }
 
 /// Writes rows as a recording of ROS 2 messages.
@@ -21,17 +23,20 @@ pub struct McapRecorder<W: Write + Seek> {
 }
 
 impl<W: Write> CsvRecorder<W> {
-    /// Writes the header of a log with forces, covariances and this many tactile sensors.
+    /// Writes the header of a log of `scene` with forces, covariances, and a column for each tactile
+    /// sensor that its bodies may have.
     ///
     /// # Errors
     /// Those of `writer`.
-    pub fn new(mut writer: W, sensors: usize) -> std::io::Result<Self> {
-        writeln!(
+    pub fn new(mut writer: W, scene: &Scene) -> std::io::Result<Self> {
+        let (sensors, fingers) = (scene.sensors(), scene.pusher.fingers.len() - 1);
+        let first = one_row(&Row::default(), sensors, fingers);
+        writeln!(writer, "{}", header(&first).join(","))?;
+        Ok(Self {
             writer,
-            "{}",
-            header(&one_row(&Row::default(), sensors)).join(",")
-        )?;
-        Ok(Self { writer, sensors })
+            sensors,
+            fingers,
+        })
     }
 
     /// Writes a row, up to the operating system. Times must rise from row to row for the log to be
@@ -40,19 +45,21 @@ impl<W: Write> CsvRecorder<W> {
     /// # Errors
     /// Those of the writer.
     pub fn write(&mut self, row: &Row) -> std::io::Result<()> {
-        let log = one_row(row, self.sensors);
+        let log = one_row(row, self.sensors, self.fingers);
         writeln!(self.writer, "{}", cells(&log, 0).join(","))?;
         self.writer.flush()
     }
 }
 
 impl<W: Write + Seek> McapRecorder<W> {
-    /// Begins a recording with forces, covariances and this many tactile sensors.
+    /// Begins a recording of `scene` with forces, covariances, and a topic for each tactile sensor
+    /// that its bodies may have.
     ///
     /// # Errors
-    /// Those of `writer`.
-    pub fn new(writer: W, sensors: usize) -> Result<Self, McapWriteError> {
-        let log = one_row(&Row::default(), sensors);
+    /// Those of `writer`; a hand of several fingers.
+    pub fn new(writer: W, scene: &Scene) -> Result<Self, McapWriteError> {
+        let (sensors, fingers) = (scene.sensors(), scene.pusher.fingers.len() - 1);
+        let log = one_row(&Row::default(), sensors, fingers);
         let messages = LogMessages::new(writer, &log, &Topics::default())?;
         Ok(Self { messages, sensors })
     }
@@ -62,7 +69,7 @@ impl<W: Write + Seek> McapRecorder<W> {
     /// # Errors
     /// A time that a stamp cannot hold, or what the writer says.
     pub fn write(&mut self, row: &Row) -> Result<(), McapWriteError> {
-        self.messages.write(&one_row(row, self.sensors))
+        self.messages.write(&one_row(row, self.sensors, 0))
     }
 
     /// Ends the chunk at hand and writes it, up to the operating system: data written by then can
@@ -84,13 +91,15 @@ impl<W: Write + Seek> McapRecorder<W> {
 }
 
 /// A log of one row.
-fn one_row(row: &Row, sensors: usize) -> Log {
+fn one_row(row: &Row, sensors: usize, fingers: usize) -> Log {
+    let finger = |k: usize| vec![row.other_fingers.get(k).copied().flatten()];
     let reading = |k: usize| vec![row.tactile.get(k).copied().flatten()];
     Log {
         time: vec![row.time],
         object: vec![row.object],
         object_covariance: vec![row.object_covariance],
         pusher: vec![row.pusher],
+        other_fingers: (0..fingers).map(finger).collect(),
         tactile: (0..sensors).map(reading).collect(),
         force: vec![row.force],
     }

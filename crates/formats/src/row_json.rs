@@ -8,7 +8,9 @@ use serde_json::Value;
 use stickslip::Row;
 use stickslip_dynamics::Pose;
 
-use crate::log_csv::{COVARIANCE, FORCE, OBJECT, PUSHER, TACTILE, covariance};
+use crate::log_csv::{
+    COVARIANCE, FINGERS, FORCE, OBJECT, PUSHER, TACTILE, covariance, finger_names,
+};
 use crate::nearest::nearest;
 
 /// Most tactile sensors of a row.
@@ -93,6 +95,10 @@ pub fn read_row_json(line: &str) -> Result<Row, RowJsonError> {
         object: whole(OBJECT, number)?.map(pose),
         object_covariance: whole(COVARIANCE, number)?.map(covariance),
         pusher: whole(PUSHER, number)?.map(pose),
+        other_fingers: finger_names(|name| seen.contains(&name))
+            .iter()
+            .map(|names| Ok(whole(*names, number)?.map(pose)))
+            .collect::<Result<_, _>>()?,
         tactile: Vec::new(),
         force: whole(FORCE, number)?,
     };
@@ -117,6 +123,7 @@ fn check_key(key: &str) -> Result<(), RowJsonError> {
             .into_iter()
             .chain(OBJECT)
             .chain(PUSHER)
+            .chain(FINGERS.into_iter().flatten())
             .chain(FORCE)
             .chain(COVARIANCE)
     };

@@ -8,7 +8,7 @@ use stickslip::{
 };
 use stickslip_dynamics::{Particles, StepInput};
 use stickslip_evaluation::LearnedParameter;
-use stickslip_formats::{check_sensors, estimate_columns};
+use stickslip_formats::{check_bodies, estimate_columns};
 
 use crate::columns::to_dict;
 use crate::error::{refused, warn};
@@ -73,7 +73,7 @@ pub fn check(
     scene: &Bound<'_, Scene>,
 ) -> PyResult<Vec<FindingParts>> {
     let (log, setup) = (log_of(log)?, &scene.get().setup);
-    check_sensors(&log, setup).map_err(refused)?;
+    check_bodies(&log, setup).map_err(refused)?;
     let parts = |finding: Finding| {
         let (subject, severity) = (finding.subject.to_string(), finding.severity.to_string());
         (subject, severity, finding.found, finding.advice)
@@ -91,7 +91,7 @@ pub fn run_log(
     progress: Option<Py<PyAny>>,
     observer: Option<&dyn Observer>,
 ) -> PyResult<Run> {
-    check_sensors(log, &scene.setup).map_err(refused)?;
+    check_bodies(log, &scene.setup).map_err(refused)?;
     let options = arguments.options()?;
     stickslip_cli::check_occlusion(options.occlusion, log).map_err(refused)?;
     if !arguments.force {

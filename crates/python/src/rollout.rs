@@ -23,8 +23,8 @@ type Numbers = [f64; 3];
 
 /// Step (s), threads and arrays of a rollout, in C order; the motion is written into the last two.
 ///
-/// states (N, 6), friction (N, 4), pushers (N, T + 1, 3) or (1, T + 1, 3) for all, poses and twists
-/// (N, T + 1, 3).
+/// states (N, 6), friction (N, 4), pushers (N, T + 1, 3 F) or (1, T + 1, 3 F) for all, with F
+/// fingers, poses and twists (N, T + 1, 3).
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub struct Arguments<'py> {
@@ -47,8 +47,9 @@ pub fn rollout<'py>(
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let mut arrays = arguments.0;
-    let rows = arrays.check()?;
     let (dynamics, h) = (&scene.get().dynamics, arrays.h);
+    let fingers = dynamics.scene().pusher.fingers.len();
+    let rows = arrays.check(fingers)?;
     let states = arrays.states.as_slice()?.as_chunks::<6>().0;
     let friction = arrays.friction.as_slice()?.as_chunks::<4>().0;
     let pushers = arrays.pushers.as_slice()?.as_chunks::<3>().0;
@@ -56,7 +57,7 @@ pub fn rollout<'py>(
     let twists = arrays.twists.as_slice_mut()?.as_chunks_mut::<3>().0;
 
     // blocks of trajectories, each with its part of every array
-    let shared = pushers.len() == rows;
+    let shared = pushers.len() == rows * fingers;
     let blocks = states
         .par_chunks(ROLLOUT_BLOCK)
         .zip(friction.par_chunks(ROLLOUT_BLOCK))
@@ -73,10 +74,11 @@ pub fn rollout<'py>(
             let first = block * ROLLOUT_BLOCK;
             let block = Block {
                 rows,
+                fingers,
                 pushers: if shared {
                     pushers
                 } else {
-                    &pushers[first * rows..]
+                    &pushers[first * rows * fingers..]
                 },
                 shared,
                 poses,
@@ -121,13 +123,13 @@ fn to_dict<'py>(py: Python<'py>, ends: &[RolloutEnd]) -> PyResult<Bound<'py, PyD
 
 impl Arguments<'_> {
     /// T + 1, where the arrays go together; the package makes them so.
-    fn check(&self) -> PyResult<usize> {
+    fn check(&self, fingers: usize) -> PyResult<usize> {
         let (states, pushers) = (self.states.shape(), self.pushers.shape());
         let (count, rows) = (states[0], pushers[1]);
         let of = [count, rows, 3];
         let right = states[1] == 6
             && self.friction.shape() == [count, 4]
-            && pushers[2] == 3
+            && pushers[2] == 3 * fingers
             && [1, count].contains(&pushers[0])
             && self.poses.shape() == of
             && self.twists.shape() == of;
@@ -158,6 +160,7 @@ fn placed(error: RolloutError, first: usize) -> RolloutError {
 /// Some trajectories' parts of the arrays.
 struct Block<'a> {
     rows: usize,
+    fingers: usize,
     pushers: &'a [Numbers],
     /// True if all trajectories have one pusher.
     shared: bool,
@@ -198,14 +201,14 @@ impl Block<'_> {
 }
 
 impl RolloutArrays for Block<'_> {
-    fn pusher(&self, trajectory: usize, row: usize) -> Pose {
+    fn finger(&self, trajectory: usize, row: usize, finger: usize) -> Pose {
         self.watch.check();
         let first = if self.shared {
             0
         } else {
             trajectory * self.rows
         };
-        let [x, y, theta] = self.pushers[first + row];
+        let [x, y, theta] = self.pushers[(first + row) * self.fingers + finger];
         Pose::new(x, y, theta)
     }
 

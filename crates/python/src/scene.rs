@@ -49,6 +49,12 @@ impl Scene {
         edited(edit, values, &self.name)
     }
 
+    /// Number of the other fingers of a hand, besides the pusher.
+    #[getter]
+    fn fingers(&self) -> usize {
+        self.setup.scene.pusher.fingers.len() - 1
+    }
+
     /// Number of fixels.
     #[getter]
     fn fixels(&self) -> usize {

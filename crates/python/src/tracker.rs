@@ -38,7 +38,7 @@ struct State {
     learning: LearningFriction,
     /// Warnings that were issued, by subject and severity.
     warned: Vec<(Subject, Severity)>,
-    fixels: usize,
+    others: usize,
     has_tripod: bool,
 }
 
@@ -64,6 +64,7 @@ struct Measured {
     object: Option<Numbers>,
     object_covariance: Option<[f64; 6]>,
     pusher: Option<Numbers>,
+    fingers: Vec<Option<Numbers>>,
     tactile: Vec<Option<Reading>>,
     force: Option<[f64; 2]>,
 }
@@ -88,7 +89,7 @@ impl Tracker {
             tracker,
             learning: LearningFriction::new(setup),
             warned: Vec::new(),
-            fixels: setup.scene.fixels.len(),
+            others: setup.scene.others(),
             has_tripod: setup.has_tripod(),
         })))
     }
@@ -102,6 +103,7 @@ impl Tracker {
             object: row.object.map(pose),
             object_covariance: row.object_covariance.map(covariance),
             pusher: row.pusher.map(pose),
+            other_fingers: row.fingers.iter().map(|own| own.map(pose)).collect(),
             tactile: row
                 .tactile
                 .iter()
@@ -177,7 +179,7 @@ impl State {
         Estimate {
             time: vec![self.tracker.time().unwrap_or(f64::NAN)],
             rows: vec![self.tracker.estimate().clone()],
-            fixels: self.fixels,
+            others: self.others,
             has_tripod: self.has_tripod,
         }
     }

@@ -188,7 +188,7 @@ fn scene() -> Result<Scene, Box<dyn std::error::Error>> {
         },
         feet: Feet::Tripod { angle: 0.0 },
         pusher: Pusher {
-            shape: finger.clone(),
+            fingers: vec![finger.clone()],
             stall_force: None,
         },
         fixels: [[0.05, 0.02], [0.05, -0.03]]

@@ -73,7 +73,7 @@ impl ReportedExperiment<'_> {
                 rect width=(px(wide)) height=(px(high)) fill=(OFF) { (off) }
                 path d=(grid_lines(animation.corner, animation.scale, TABLE)) stroke="#8a8794" stroke-opacity="0.25" fill="none" {}
                 (animation.filled(shape, &truth, "0.45"))
-                (animation.filled(&scene.pusher.shape, &pusher, "0.9"))
+                (animation.filled(&scene.pusher.fingers[0], &pusher, "0.9"))
                 @for fixel in &scene.fixels { (animation.filled(&fixel.shape, &[fixel.pose], "0.9")) }
                 @for particle in &particles { (particle) }
                 @for run in drawn { (animation.outline(shape, &of_run(run), thick(run))) }

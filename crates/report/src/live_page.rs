@@ -26,7 +26,7 @@ pub fn live_page(scene: &Scene, title: &str) -> String {
     let view = [low[0], low[1], high[0], high[1]].map(|x| 1e3 * x);
     let data = json!({
         "object": body(&outline(&scene.object.shape)),
-        "pusher": body(&outline(&scene.pusher.shape)),
+        "pusher": body(&outline(&scene.pusher.fingers[0])),
         "fixels": fixels.iter().map(body).collect::<Vec<_>>(),
         "reach": 1e3 * scene.object.shape.bounding_radius(),
         "view": view,

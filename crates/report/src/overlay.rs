@@ -96,8 +96,8 @@ impl Body {
             tag: (k + 1).to_string(),
             ..Self::new("", &fixel.shape, &fixel.pose, Colour::INK).filled(0.25)
         };
-        let pusher =
-            pusher.map(|pose| Self::new("", &scene.pusher.shape, pose, Colour::INK).filled(0.45));
+        let pusher = pusher
+            .map(|pose| Self::new("", &scene.pusher.fingers[0], pose, Colour::INK).filled(0.45));
         scene
             .fixels
             .iter()

@@ -135,7 +135,7 @@ impl Playback {
             focus: 0..log.len(),
             poster: log.len().saturating_sub(1),
             object: Outline::new(&scene.object.shape),
-            pusher: Outline::new(&scene.pusher.shape),
+            pusher: Outline::new(&scene.pusher.fingers[0]),
             fixels: scene
                 .fixels
                 .iter()

@@ -69,7 +69,7 @@ impl<'a> TouchRule<'a> {
         match body.checked_sub(1).map(|fixel| &fixels[fixel]) {
             Some(fixel) => self.within(object, &fixel.shape, fixel.pose, GAP),
             None => pusher.is_some_and(|pose| {
-                self.within(object, &self.scene.pusher.shape, pose, self.pusher_gap)
+                self.within(object, &self.scene.pusher.fingers[0], pose, self.pusher_gap)
             }),
         }
     }
@@ -90,7 +90,7 @@ impl<'a> TouchRule<'a> {
         pusher: Option<Pose>,
     ) -> Option<Vec<f64>> {
         let pressed: Vec<f64> = std::iter::once(row.contact_pusher?)
-            .chain(row.contact_fixels.iter().flatten().copied())
+            .chain(row.contact_others.iter().flatten().copied())
             .collect();
         let share = |body: usize| {
             let near = particles
@@ -163,7 +163,7 @@ mod tests {
                 },
                 feet: Feet::Tripod { angle: 0.0 },
                 pusher: Pusher {
-                    shape: disc(0.01),
+                    fingers: vec![disc(0.01)],
                     stall_force: None,
                 },
                 fixels: vec![Fixel {
@@ -241,7 +241,7 @@ mod tests {
         let setup = setup();
         let row = EstimateRow {
             contact_pusher: Some(0.25),
-            contact_fixels: Some(vec![0.0]),
+            contact_others: Some(vec![0.0]),
             ..EstimateRow::default()
         };
         let particles = [0.019_85, 0.02, 0.018, 0.0199].map(|x| Pose::new(x, 0.0, 0.0));

@@ -1,7 +1,7 @@
 //! The model in the rig's place: [`Model`] runs Γ itself, one step per frame.
 
 use stickslip_dynamics::{
-    Body, Dynamics, Friction, Outcome, Particle, Pose, PusherMotion, StepInput, StepWork,
+    Body, Dynamics, FingerMotion, Friction, Outcome, Particle, Pose, StepInput, StepWork,
 };
 
 use crate::touch::TouchSensors;
@@ -57,11 +57,14 @@ impl Model {
                 .twist_to(trial.start.commanded(trial.time(k)), h);
             let input = StepInput {
                 h,
-                pusher: Some(PusherMotion {
-                    pose: pusher,
-                    twist,
-                    direction,
-                }),
+                pusher: Some(
+                    FingerMotion {
+                        pose: pusher,
+                        twist,
+                        direction,
+                    }
+                    .into(),
+                ),
             };
             let [report] = dynamics.step(
                 &input,
@@ -71,7 +74,7 @@ impl Model {
             );
             unsolved += usize::from(report.outcome != Outcome::Solved);
             // the trace's pusher pose is exact: no lag is left to the particle
-            let [x, y] = std::mem::take(&mut object.pusher_lag);
+            let [x, y] = std::mem::take(&mut object.pusher_lag[0]);
             pusher = pusher.advance(twist, h);
             (pusher.x, pusher.y) = (pusher.x - x, pusher.y - y);
             frames.push(frame(
@@ -127,7 +130,7 @@ fn frame(
 ) -> Frame {
     let of = |body: Body| contacts.iter().filter(move |contact| contact.body == body);
     let along = |axis: usize| {
-        of(Body::Pusher)
+        of(Body::Finger(0))
             .map(|c| c.force[axis])
             .fold(0.0, |sum, f| sum + f)
     };

@@ -59,7 +59,7 @@ impl Trace {
     /// The first frame in whose interval a body pressed on the object.
     pub fn first_contact(&self, body: Body) -> Option<usize> {
         self.frames.iter().position(|frame| match body {
-            Body::Pusher => frame.pusher_force != [0.0; 2],
+            Body::Finger(_) => frame.pusher_force != [0.0; 2],
             Body::Fixel(j) => frame.fixel_forces.get(j).is_some_and(|force| *force > 0.0),
         })
     }

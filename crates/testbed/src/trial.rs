@@ -30,6 +30,15 @@ pub enum TrialError {
         /// The rate found (Hz).
         rate: f64,
     },
+    /// A hand of several fingers.
+    #[error(
+        "the scene has {} besides the pusher; simulations have one pusher. Remove the [[finger]] tables",
+        match fingers { 1 => "a [[finger]]".to_owned(), _ => format!("{fingers} [[finger]] tables") }
+    )]
+    Hand {
+        /// Fingers besides the pusher.
+        fingers: usize,
+    },
     /// A friction coefficient is none.
     #[error(
         "the true {name} is {value}; it must be a finite number from 0 up. Give a coefficient of friction"
@@ -88,13 +97,21 @@ impl Trial<'_> {
         if !(1.0..=1000.0).contains(&self.rate) {
             return Err(TrialError::Rate { rate: self.rate });
         }
+        let fingers = self.scene.pusher.fingers.len() - 1;
+        if fingers > 0 {
+            return Err(TrialError::Hand { fingers });
+        }
         if let Some((name, value)) = friction
             .into_iter()
             .find(|(_, value)| !value.is_finite() || *value < 0.0)
         {
             return Err(TrialError::Friction { name, value });
         }
-        let pusher = (Body::Pusher, &self.scene.pusher.shape, self.start.pusher);
+        let pusher = (
+            Body::Finger(0),
+            &self.scene.pusher.fingers[0],
+            self.start.pusher,
+        );
         let fixels = self
             .scene
             .fixels
@@ -116,7 +133,7 @@ impl Trial<'_> {
 
 fn body_name(body: Body) -> String {
     match body {
-        Body::Pusher => "the pusher".to_owned(),
+        Body::Finger(_) => "the pusher".to_owned(),
         Body::Fixel(j) => format!("fixel {}", j + 1),
     }
 }

@@ -1,6 +1,6 @@
 //! Steps that a solver once failed on, or took long for: [`hard_steps`].
 
-use stickslip_dynamics::{ContactPoint, Foot, Stall, StepProblem, StepSolution, Twist, Wrench};
+use stickslip_dynamics::{ContactPoint, Foot, StepProblem, StepSolution, Twist, Wrench};
 
 /// One step a line; its comments explain the numbers.
 const TEXT: &str = include_str!("../data/hard_steps.txt");
@@ -45,7 +45,7 @@ fn read(line: &str) -> HardStep {
     let impulse = next();
     let direction = [next(), next()];
     let count = next() as usize;
-    let contacts: Vec<_> = (0..count).map(|_| contact(&mut next)).collect();
+    let contacts: Vec<_> = (0..count).map(|_| contact(direction, &mut next)).collect();
     let start = start(count, &mut next);
     HardStep {
         class: class.to_owned(),
@@ -57,13 +57,14 @@ fn read(line: &str) -> HardStep {
             applied: Wrench::default(),
             contacts,
             feet,
-            stall: impulse.is_finite().then_some(Stall { impulse, direction }),
+            stall: impulse.is_finite().then_some(impulse),
         },
         start,
     }
 }
 
-fn contact(next: &mut impl FnMut() -> f64) -> ContactPoint {
+/// A contact; one on the pusher yields along `direction`.
+fn contact(direction: [f64; 2], next: &mut impl FnMut() -> f64) -> ContactPoint {
     let normal = [next(), next()];
     let arm = [next(), next()];
     let gap = next();
@@ -75,7 +76,7 @@ fn contact(next: &mut impl FnMut() -> f64) -> ContactPoint {
         gap,
         surface_velocity: [-normal[1] * slip, normal[0] * slip],
         mu: next(),
-        on_pusher: next() > 0.0,
+        yields: (next() > 0.0).then_some(direction),
     }
 }
 

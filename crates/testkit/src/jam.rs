@@ -141,7 +141,7 @@ fn least_wrench(problem: &StepProblem) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use stickslip_dynamics::{ContactPoint, Stall};
+    use stickslip_dynamics::ContactPoint;
 
     use super::*;
 
@@ -151,7 +151,7 @@ mod tests {
             normal: [-sign, 0.0],
             arm: [0.3 * sign, apart * sign],
             mu: 0.5,
-            on_pusher: true,
+            yields: Some([1.0, 0.0]),
             gap: 0.0,
             surface_velocity: [0.0; 2],
         };
@@ -160,10 +160,7 @@ mod tests {
             inertia: 1.0,
             h: 1.0,
             contacts: vec![contact(1.0), contact(-1.0)],
-            stall: Some(Stall {
-                impulse: 0.02,
-                direction: [1.0, 0.0],
-            }),
+            stall: Some(0.02),
             ..StepProblem::default()
         }
     }
@@ -178,13 +175,10 @@ mod tests {
     #[test]
     fn object_between_pusher_and_fixel_jams_where_the_drive_does_not_give_way() {
         let mut problem = pinched(0.0);
-        problem.contacts[0].on_pusher = false;
+        problem.contacts[0].yields = None;
         // the pusher at the left presses along +x, and so resists its drive
         assert!(!may_jam(&problem), "the drive gives way");
-        problem.stall = problem.stall.map(|stall| Stall {
-            direction: [-1.0, 0.0],
-            ..stall
-        });
+        problem.contacts[1].yields = Some([-1.0, 0.0]);
         assert!(may_jam(&problem), "what drags it along need not yield");
         problem.stall = None;
         assert!(may_jam(&problem), "rigid");

@@ -3,7 +3,7 @@
 //!
 //! A solver that fails on one of these has failed; "there may be no solution" is no excuse.
 
-use stickslip_dynamics::{ContactPoint, Stall, StepProblem, StepSolution, Twist, Wrench};
+use stickslip_dynamics::{ContactPoint, StepProblem, StepSolution, Twist, Wrench};
 
 use crate::problem_builder::{FASTEST, Other, ProblemBuilder};
 use crate::vector::{cross, dot, left};
@@ -112,7 +112,7 @@ fn relative_velocity(
         contact.surface_velocity,
         builder.drive(),
     );
-    let pusher_yield = if contact.on_pusher {
+    let pusher_yield = if contact.yields.is_some() {
         solution.pusher_yield
     } else {
         0.0
@@ -155,7 +155,7 @@ fn set_stall(builder: &mut ProblemBuilder, solution: &mut StepSolution) {
         .contacts
         .iter()
         .zip(solution.normal.iter().zip(&solution.tangential))
-        .filter(|(c, _)| c.on_pusher);
+        .filter(|(c, _)| c.yields.is_some());
     let force: f64 = resisting
         .map(|(c, (n, t))| n * dot(c.normal, direction) + t * dot(left(c.normal), direction))
         .sum();
@@ -164,22 +164,17 @@ fn set_stall(builder: &mut ProblemBuilder, solution: &mut StepSolution) {
         if force <= 0.0 {
             let pusher_yield = solution.pusher_yield;
             solution.pusher_yield = 0.0;
-            for contact in builder.problem.contacts.iter_mut().filter(|c| c.on_pusher) {
+            let contacts = builder.problem.contacts.iter_mut();
+            for contact in contacts.filter(|c| c.yields.is_some()) {
                 contact.surface_velocity = [0, 1]
                     .map(|axis| contact.surface_velocity[axis] - pusher_yield * direction[axis]);
             }
             return;
         }
-        builder.problem.stall = Some(Stall {
-            impulse: force,
-            direction,
-        });
+        builder.problem.stall = Some(force);
     } else if builder.rng.one_in(3) {
         let reserve = builder.rng.within(0.1, 2.0) * builder.bound;
-        builder.problem.stall = Some(Stall {
-            impulse: force.max(0.0) + reserve,
-            direction,
-        });
+        builder.problem.stall = Some(force.max(0.0) + reserve);
     }
 }
 

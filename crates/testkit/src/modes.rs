@@ -125,7 +125,7 @@ fn modes(problem: &StepProblem) -> Vec<Mode> {
             FeetMode::Stuck,
         ]
     };
-    let may_stall = problem.stall.is_some() && problem.contacts.iter().any(|c| c.on_pusher);
+    let may_stall = problem.stall.is_some() && problem.contacts.iter().any(|c| c.yields.is_some());
     let drives = if may_stall {
         vec![DriveMode::Commanded, DriveMode::Stalled]
     } else {

@@ -5,7 +5,7 @@
 //! ρ 3–60 mm, steps 0.1–33 ms, speeds up to 0.3 m/s. Contacts lie within 2.1 ρ of the centre of
 //! mass (faces 3.2 ρ), gaps within ±2 mm.
 
-use stickslip_dynamics::{ContactPoint, Foot, Stall, StepProblem, Twist, Wrench};
+use stickslip_dynamics::{ContactPoint, Foot, StepProblem, Twist, Wrench};
 
 use crate::rng::SplitMix64;
 use crate::vector::left;
@@ -150,10 +150,7 @@ impl ProblemBuilder {
     /// object alone takes.
     pub fn limit_drive(&mut self) {
         let needed = self.bound + self.problem.mass * libm::hypot(self.pusher.vx, self.pusher.vy);
-        self.problem.stall = Some(Stall {
-            impulse: needed * self.rng.log_within(0.05, 20.0),
-            direction: self.drive(),
-        });
+        self.problem.stall = Some(needed * self.rng.log_within(0.05, 20.0));
     }
 
     pub fn friction(&mut self) -> f64 {
@@ -214,7 +211,7 @@ impl ProblemBuilder {
             gap,
             mu,
             surface_velocity,
-            on_pusher: other == Other::Pusher,
+            yields: (other == Other::Pusher).then(|| self.drive()),
         }
     }
 

@@ -137,8 +137,8 @@ fn relative_velocity(
     contact: &ContactPoint,
 ) -> [f64; 2] {
     let (v, u) = (solution.twist.at(contact.arm), contact.surface_velocity);
-    let pusher_yield = match problem.stall {
-        Some(stall) if contact.on_pusher => stall.direction.map(|d| solution.pusher_yield * d),
+    let pusher_yield = match (problem.stall, contact.yields) {
+        (Some(_), Some(direction)) => direction.map(|d| solution.pusher_yield * d),
         _ => [0.0; 2],
     };
     [
@@ -181,22 +181,17 @@ fn foot_row(problem: &StepProblem, solution: &StepSolution, k: usize) -> f64 {
 
 fn stall_row(problem: &StepProblem, solution: &StepSolution) -> f64 {
     let lag = problem.mass * solution.pusher_yield;
-    problem.stall.map_or(lag, |stall| {
-        lag.min(stall.impulse - drive_impulse(problem, solution, stall.direction))
+    problem.stall.map_or(lag, |impulse| {
+        lag.min(impulse - drive_impulse(problem, solution))
     })
 }
 
-/// F: the impulse along `direction` with which the object resists the pusher (N s).
-fn drive_impulse(problem: &StepProblem, solution: &StepSolution, direction: [f64; 2]) -> f64 {
+/// F: the impulse with which the object resists the pusher (N s), along each finger's direction.
+fn drive_impulse(problem: &StepProblem, solution: &StepSolution) -> f64 {
     let magnitudes = solution.normal.iter().zip(&solution.tangential);
-    let pushed = problem
-        .contacts
-        .iter()
-        .zip(magnitudes)
-        .filter(|(c, _)| c.on_pusher);
-    pushed
-        .map(|(c, (&n, &t))| dot(contact_impulse(c, n, t), direction))
-        .sum()
+    let contacts = problem.contacts.iter().zip(magnitudes);
+    let along = contacts.filter_map(|(c, (&n, &t))| Some(dot(contact_impulse(c, n, t), c.yields?)));
+    along.sum()
 }
 
 /// Everything that enters the rows: one number that is not finite makes all of them infinite.
@@ -231,11 +226,10 @@ fn numbers(problem: &StepProblem, solution: &StepSolution) -> Vec<f64> {
             .flat_map(|foot| [foot.arm[0], foot.arm[1], foot.bound]),
     );
     all.extend(solution.feet.as_flattened());
-    all.extend(
-        problem
-            .stall
-            .iter()
-            .flat_map(|stall| [stall.impulse, stall.direction[0], stall.direction[1]]),
-    );
+    if let Some(impulse) = problem.stall {
+        let directions = problem.contacts.iter().filter_map(|contact| contact.yields);
+        all.push(impulse);
+        all.extend(directions.flatten());
+    }
     all
 }

@@ -97,16 +97,12 @@ impl<'a> ScaledProblem<'a> {
     /// Speed at which the contact's surface retreats along −`direction` per unit of the pusher's
     /// yield: d·direction, 0 for a fixel.
     pub fn yielding(&self, contact: &ContactPoint, direction: [f64; 2]) -> f64 {
-        self.problem
-            .stall
-            .filter(|_| contact.on_pusher)
-            .map_or(0.0, |stall| dot(direction, stall.direction))
+        let yields = contact.yields.filter(|_| self.problem.stall.is_some());
+        yields.map_or(0.0, |yields| dot(direction, yields))
     }
 
     pub fn stall_impulse(&self) -> Option<f64> {
-        self.problem
-            .stall
-            .map(|stall| stall.impulse / self.impulse())
+        self.problem.stall.map(|impulse| impulse / self.impulse())
     }
 
     /// z without any contact or friction impulse.

@@ -50,7 +50,7 @@ pub fn pushed_scene(object: Shape, pusher: Shape, fixels: Vec<Fixel>) -> Scene {
             angle: std::f64::consts::FRAC_PI_2,
         },
         pusher: Pusher {
-            shape: pusher,
+            fingers: vec![pusher],
             stall_force: None,
         },
         fixels,

@@ -32,7 +32,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let starts: Vec<RolloutStart> = (0..STATES).map(start).collect();
     let frames = (0..=MOVING.end as u32).filter_map(|frame| timing_input(frame).pusher);
-    let push: Vec<Pose> = frames.map(|motion| motion.pose).collect();
+    let push: Vec<Pose> = frames.map(|motion| motion[0].pose).collect();
     let pushers = push.repeat(STATES as usize);
     let mut best = f64::INFINITY;
     for _ in 0..ROUNDS {

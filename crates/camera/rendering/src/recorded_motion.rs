@@ -26,7 +26,7 @@ impl RecordedMotion {
             move |pose: &Pose| (pose.x, pose.y, radius)
         };
         let object = moving(&scene.object.shape, &appearance.object_tag);
-        let pusher = moving(&scene.pusher.shape, &appearance.pusher_tag);
+        let pusher = moving(&scene.pusher.fingers[0], &appearance.pusher_tag);
         let fixels = scene
             .fixels
             .iter()

@@ -49,7 +49,7 @@ impl RenderScene {
                 .map(|part| Prism::plain(parent, part, [0.0, height], greys))
                 .collect::<Vec<_>>()
         };
-        let (object, pusher) = (&scene.object.shape, &scene.pusher.shape);
+        let (object, pusher) = (&scene.object.shape, &scene.pusher.fingers[0]);
         let mut prisms = upright(Parent::Object, object, appearance.object_height, OBJECT);
         prisms.extend(upright(
             Parent::Pusher,

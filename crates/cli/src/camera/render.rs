@@ -17,7 +17,7 @@ use stickslip_vision::{BoardOnTable, write_board, write_tags};
 use super::args::RenderArgs;
 use super::setup::CameraSetup;
 use crate::arg_values::Rows;
-use crate::experiment::{read_folder, reference_name};
+use crate::experiment::{one_pusher, read_folder, reference_name};
 use crate::failure::hinted;
 use crate::files::{make_folder, write_out};
 use crate::log_files::log_path;
@@ -32,8 +32,9 @@ pub fn render(args: &RenderArgs) -> Result<Verdict> {
         &args.folder.join("scene.toml"),
         &BagOptions::default(),
     )?;
-    let recorded = recorded(args, &experiment)?;
     let scene = &experiment.setup.scene;
+    one_pusher(scene, "a video")?;
+    let recorded = recorded(args, &experiment)?;
     let optics = Optics {
         blur: args.blur,
         ..Optics::default()

@@ -70,6 +70,7 @@ pub fn track(args: &TrackArgs) -> Result<Verdict> {
         object: found.object(),
         object_covariance: Vec::new(),
         pusher: found.pusher(),
+        other_fingers: Vec::new(),
         time,
         tactile: readings.tactile,
         force: readings.force,

@@ -8,7 +8,7 @@ use stickslip_report::{Block, ReportedExperiment, Section};
 
 use super::Folder;
 use super::results::{Comparison, FolderResult};
-use crate::experiment::experiment_name;
+use crate::experiment::{experiment_name, one_pusher};
 use crate::log_files::log_path;
 use crate::reported_run::reported_run;
 use crate::since_start::since_start;
@@ -61,6 +61,7 @@ fn section(folder: &Folder, model: FilterModel, particles: usize) -> Result<Sect
         occlusion,
         ..
     } = folder;
+    one_pusher(&experiment.setup.scene, "a report")?;
     let conditions = RunConditions {
         model,
         particles,

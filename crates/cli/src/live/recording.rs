@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Result, anyhow};
 use stickslip::Row;
+use stickslip::dynamics::Scene;
 use stickslip_formats::{CsvRecorder, McapRecorder, McapWriteError};
 
 use super::session::PAUSE;
@@ -49,7 +50,7 @@ enum Recorder {
 impl Recording {
     /// Begins a recording, as CSV or MCAP by the ending of its name; a file that is there is
     /// refused. Of two sessions that begin one file, one is refused.
-    pub fn create(path: &Path, sensors: usize) -> Result<Self> {
+    pub fn create(path: &Path, scene: &Scene) -> Result<Self> {
         let help = "name a new file that ends in .mcap or .csv";
         let failed = |error: &dyn std::fmt::Display| {
             hinted(
@@ -69,11 +70,11 @@ impl Recording {
         };
         let recorder = match path.extension().and_then(|ending| ending.to_str()) {
             Some("mcap") => {
-                let recorder = McapRecorder::new(file()?, sensors);
+                let recorder = McapRecorder::new(file()?, scene);
                 Recorder::Mcap(Box::new(recorder.map_err(|error| failed(&error))?))
             }
             Some("csv") => {
-                Recorder::Csv(CsvRecorder::new(file()?, sensors).map_err(|error| failed(&error))?)
+                Recorder::Csv(CsvRecorder::new(file()?, scene).map_err(|error| failed(&error))?)
             }
             _ => {
                 return Err(hinted(

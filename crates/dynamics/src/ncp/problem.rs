@@ -4,7 +4,7 @@
 //! Unknowns are the twist v⁺, per contact the normal and tangential impulse (p_n, p_t), per foot a
 //! planar friction impulse p_k, and the speed y ≥ 0 by which a stalled pusher falls short of its
 //! command. Conditions, with W_n = (n, r × n), W_t = (t, r × t), t = n turned by +90°, and u the
-//! commanded surface velocity of the other body:
+//! commanded surface velocity of the other body, d the direction in which it yields:
 //!
 //! ```text
 //! M v⁺ = M v + p_app + Σ W_n p_n + Σ W_t p_t + Σ J_kᵀ p_k
@@ -29,8 +29,9 @@ pub struct ContactPoint {
     pub mu: f64,
     /// Commanded velocity of the other body's surface at the contact point (m/s); zero for a fixel.
     pub surface_velocity: [f64; 2],
-    /// True if the other body is the pusher, which may stall.
-    pub on_pusher: bool,
+    /// On a finger of the pusher, which may stall: unit vector d in which it yields, world frame.
+    /// `None` on a fixel.
+    pub yields: Option<[f64; 2]>,
 }
 
 /// One foot of the support tripod.
@@ -40,15 +41,6 @@ pub struct Foot {
     pub arm: [f64; 2],
     /// Largest friction impulse μ_s p_ns (N s).
     pub bound: f64,
-}
-
-/// The force limit of the pusher's drive.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stall {
-    /// F_stall h (N s).
-    pub impulse: f64,
-    /// Unit vector d of the commanded translation, world frame.
-    pub direction: [f64; 2],
 }
 
 /// One time step's mixed NCP, SI units.
@@ -68,8 +60,8 @@ pub struct StepProblem {
     pub contacts: Vec<ContactPoint>,
     /// The three feet.
     pub feet: [Foot; 3],
-    /// Stall limit; `None` is a rigid pusher.
-    pub stall: Option<Stall>,
+    /// F_stall h of the pusher's drive (N s); `None` is a rigid pusher.
+    pub stall: Option<f64>,
 }
 
 /// Unknowns of a [`StepProblem`], SI units.

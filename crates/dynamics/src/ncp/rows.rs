@@ -171,10 +171,8 @@ impl<const W: usize> ContactRow<W> {
         let n = c.normal;
         let t = [-n[1], n[0]];
         // the direction in which the other body may yield
-        let d = match problem.stall {
-            Some(stall) if c.on_pusher => stall.direction,
-            _ => [0.0; 2],
-        };
+        let d = c.yields.filter(|_| problem.stall.is_some());
+        let d = d.unwrap_or_default();
         let along = |a: [f64; 2], b: [f64; 2]| a[0] * b[0] + a[1] * b[1];
         for (column, direction) in [(&mut self.n, n), (&mut self.t, t)] {
             column[0].0[lane] = direction[0];
@@ -235,9 +233,7 @@ impl<const W: usize> Ncp<W> {
         self.free[0].0[lane] = twist.vx + applied.fx / m;
         self.free[1].0[lane] = twist.vy + applied.fy / m;
         self.free[2].0[lane] = rho * (twist.omega + applied.torque / problem.inertia);
-        self.stall.0[lane] = problem
-            .stall
-            .map_or(f64::INFINITY, |stall| stall.impulse / m);
+        self.stall.0[lane] = problem.stall.map_or(f64::INFINITY, |impulse| impulse / m);
         for (row, foot) in self.feet.iter_mut().zip(&problem.feet) {
             row.jx.0[lane] = -foot.arm[1] / rho;
             row.jy.0[lane] = foot.arm[0] / rho;

@@ -3,7 +3,7 @@
 
 use crate::common::{FRAME, at, disc, fixel, square, step, twist_distance};
 use stickslip_dynamics::{
-    Dynamics, Feet, Friction, Object, Outcome, Particle, Pose, Pusher, PusherMotion, Scene,
+    Dynamics, Feet, FingerMotion, Friction, Object, Outcome, Particle, Pose, Pusher, Scene,
     StepInput, StepWork, Twist, Wrench, solve,
 };
 use stickslip_testkit::{Block, Stop};
@@ -31,7 +31,7 @@ fn scene() -> Scene {
         },
         feet: Feet::Tripod { angle: 0.0 },
         pusher: Pusher {
-            shape: disc(0.005),
+            fingers: vec![disc(0.005)],
             stall_force: None,
         },
         fixels: vec![fixel(disc(0.005), 5.0, 5.0)],
@@ -307,11 +307,14 @@ fn resting_pusher(pose: Pose, apart: f64) -> StepInput {
     let direction = pose.rotate([1.0, 0.0]);
     StepInput {
         h: FRAME,
-        pusher: Some(PusherMotion {
-            pose: Pose::new(x, y, 0.0),
-            twist: Twist::default(),
-            direction,
-        }),
+        pusher: Some(
+            FingerMotion {
+                pose: Pose::new(x, y, 0.0),
+                twist: Twist::default(),
+                direction,
+            }
+            .into(),
+        ),
     }
 }
 

@@ -56,7 +56,7 @@ fn arena(rng: &mut Rng) -> Dynamics {
             angle: rng.within(0.0, 2.0),
         },
         pusher: Pusher {
-            shape: disc(0.005),
+            fingers: vec![disc(0.005)],
             stall_force: (rng.below(2) == 0).then_some(2.0),
         },
         fixels,

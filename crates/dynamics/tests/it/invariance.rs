@@ -4,7 +4,7 @@ use crate::common::{
     FRAME, FRICTION, bench_input, bench_scene, disc, fixel, polygon, pushing, square_scene, step,
 };
 use stickslip_dynamics::{
-    Dynamics, Feet, Object, Outcome, Part, Particle, Pose, PusherMotion, Scene, Shape, StepInput,
+    Dynamics, Feet, FingerMotion, Object, Outcome, Part, Particle, Pose, Scene, Shape, StepInput,
     StepWork, Twist, Wrench,
 };
 
@@ -95,8 +95,8 @@ impl Change {
         }
     }
 
-    fn motion(self, m: PusherMotion) -> PusherMotion {
-        PusherMotion {
+    fn motion(self, m: FingerMotion) -> FingerMotion {
+        FingerMotion {
             pose: self.pose(m.pose),
             twist: self.twist(m.twist),
             direction: self.vector(m.direction),
@@ -121,7 +121,7 @@ impl Change {
     fn scene(self, scene: &Scene) -> Scene {
         let mut changed = scene.clone();
         changed.object.shape = self.shape(&scene.object.shape);
-        changed.pusher.shape = self.shape(&scene.pusher.shape);
+        changed.pusher.fingers[0] = self.shape(&scene.pusher.fingers[0]);
         for f in &mut changed.fixels {
             (f.pose, f.shape) = (self.pose(f.pose), self.shape(&f.shape));
         }
@@ -164,7 +164,7 @@ fn assert_invariant(scene: &Scene, start: Particle, inputs: &[StepInput]) {
         let inputs: Vec<_> = inputs
             .iter()
             .map(|i| StepInput {
-                pusher: i.pusher.map(|m| change.motion(m)),
+                pusher: i.pusher.map(|pusher| pusher.map(|m| change.motion(m))),
                 ..*i
             })
             .collect();
@@ -230,7 +230,7 @@ fn push_of_an_ell_by_a_turning_bar_under_load_is_invariant() {
         bar([-0.03, 0.0], [-0.01, 0.03]),
     ])
     .expect("an ell");
-    scene.pusher.shape = Shape::new(vec![bar([-0.004, -0.02], [0.004, 0.02])]).expect("a bar");
+    scene.pusher.fingers[0] = Shape::new(vec![bar([-0.004, -0.02], [0.004, 0.02])]).expect("a bar");
     scene.nominal = stickslip_dynamics::Friction {
         mu_p: 0.5,
         ..FRICTION
@@ -243,8 +243,8 @@ fn push_of_an_ell_by_a_turning_bar_under_load_is_invariant() {
     let input = |k: u32| {
         let mut input = pushing(FRAME, -0.04 + 0.02 * FRAME * f64::from(k), 0.002, 0.02);
         if let Some(pusher) = &mut input.pusher {
-            pusher.pose.theta = 0.05 * FRAME * f64::from(k);
-            pusher.twist.omega = 0.05;
+            pusher[0].pose.theta = 0.05 * FRAME * f64::from(k);
+            pusher[0].twist.omega = 0.05;
         }
         input
     };

@@ -47,7 +47,8 @@ fn bottleneck(stall_force: Option<f64>) -> Scene {
 fn resistance(work: &StepWork<1>, solution: &StepSolution) -> f64 {
     let impulses = solution.normal.iter().zip(&solution.tangential);
     let contacts = work.problem(0).contacts;
-    let on_pusher = contacts.iter().zip(impulses).filter(|(c, _)| c.on_pusher);
+    let contacts = contacts.iter().zip(impulses);
+    let on_pusher = contacts.filter(|(c, _)| c.yields.is_some());
     on_pusher
         .map(|(c, (p_n, p_t))| p_n * c.normal[0] - p_t * c.normal[1])
         .sum()
@@ -345,7 +346,7 @@ fn between_walls(mu: f64) -> StepProblem {
         gap: 0.0,
         surface_velocity: [0.0; 2],
         mu,
-        on_pusher: false,
+        yields: None,
     };
     let arms = [[0.0, 0.5], [0.4, -0.3], [-0.4, -0.3]];
     StepProblem {
@@ -387,22 +388,22 @@ fn impulses_that_cancel_each_other_are_not_kept() {
 /// without friction: it leaves at u/tan(angle).
 fn squeezed(u: f64, angle: f64) -> (StepProblem, f64) {
     let (sin, cos) = (libm::sin(angle), libm::cos(angle));
-    let contact = |normal: [f64; 2], surface_velocity, on_pusher| ContactPoint {
+    let contact = |normal: [f64; 2], surface_velocity, yields| ContactPoint {
         normal,
         // through the centre of mass: no torque
         arm: normal.map(|n| -0.02 * n),
         gap: 0.0,
         mu: 0.0,
         surface_velocity,
-        on_pusher,
+        yields,
     };
     let problem = StepProblem {
         mass: 1.0,
         inertia: 1e-4,
         h: H,
         contacts: vec![
-            contact([1.0, 0.0], [0.0; 2], false),
-            contact([-cos, sin], [-u, 0.0], true),
+            contact([1.0, 0.0], [0.0; 2], None),
+            contact([-cos, sin], [-u, 0.0], Some([-1.0, 0.0])),
         ],
         ..StepProblem::default()
     };

@@ -8,6 +8,7 @@ mod common;
 mod cone_program;
 mod corpus;
 mod energy;
+mod hand;
 mod invariance;
 mod jam;
 mod lanes;

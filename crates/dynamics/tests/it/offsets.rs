@@ -1,8 +1,8 @@
 //! A pusher and fixels with offsets from their poses act as a pusher and fixels at other poses.
 
 use stickslip_dynamics::{
-    Body, Dynamics, Feet, Fixel, Friction, Lanes, Level, Object, Offsets, Part, Particle,
-    Particles, Pose, Pusher, PusherMotion, Scene, Shape, StepInput, StepWork, Twist,
+    Body, Dynamics, Feet, FingerMotion, Fixel, Friction, Lanes, Level, Object, Offsets, Part,
+    Particle, Particles, Pose, Pusher, Scene, Shape, StepInput, StepWork, Twist,
 };
 
 const FRICTION: Friction = Friction {
@@ -43,7 +43,7 @@ fn scene_of_discs(shift: [[f64; 2]; 2], radius: f64) -> Scene {
         },
         feet: Feet::Tripod { angle: 0.0 },
         pusher: Pusher {
-            shape: disc(radius),
+            fingers: vec![disc(radius)],
             stall_force: Some(20.0),
         },
         fixels: places.into_iter().zip(shift).map(fixel).collect(),
@@ -55,14 +55,17 @@ fn push(step: usize, [dx, dy]: [f64; 2]) -> StepInput {
     let x = -0.0302 + 0.0007 * step as f64;
     StepInput {
         h: 1.0 / 30.0,
-        pusher: Some(PusherMotion {
-            pose: Pose::new(x + dx, 0.004 + dy, 0.0),
-            twist: Twist {
-                vx: 0.021,
-                ..Twist::default()
-            },
-            direction: [1.0, 0.0],
-        }),
+        pusher: Some(
+            FingerMotion {
+                pose: Pose::new(x + dx, 0.004 + dy, 0.0),
+                twist: Twist {
+                    vx: 0.021,
+                    ..Twist::default()
+                },
+                direction: [1.0, 0.0],
+            }
+            .into(),
+        ),
     }
 }
 
@@ -113,7 +116,7 @@ fn lanes_step_as_alone(level: Level) {
             *particle = one[0];
             assert_eq!(chunk[0].get(i).pose, particle.pose, "lane {i}, step {step}");
             assert_eq!(work.reports()[0][i], own_work.reports()[0][0]);
-            for body in [Body::Pusher, Body::Fixel(0), Body::Fixel(1)] {
+            for body in [Body::Finger(0), Body::Fixel(0), Body::Fixel(1)] {
                 let (of_lane, own) = (told(&work, body).map(|x| x[i]), told(&own_work, body));
                 assert_eq!(
                     of_lane,
@@ -151,7 +154,7 @@ fn a_turned_pusher_is_one_whose_pose_is_turned() {
         [0.004, 0.02],
         [-0.004, 0.02],
     ];
-    scene.pusher.shape = Shape::new(vec![Part::Polygon { vertices: corners }]).expect("a bar");
+    scene.pusher.fingers[0] = Shape::new(vec![Part::Polygon { vertices: corners }]).expect("a bar");
     let dynamics = Dynamics::new(scene);
     let mut chunk = [Particles::<LANES>::default()];
     (0..LANES).for_each(|i| chunk[0].set(i, &Particle::default(), &FRICTION));
@@ -169,7 +172,7 @@ fn a_turned_pusher_is_one_whose_pose_is_turned() {
         for (i, particle) in alone.iter_mut().enumerate() {
             let mut turned = push(step, [0.0; 2]);
             let pusher = turned.pusher.as_mut().expect("a pusher");
-            pusher.pose.theta += turn(i);
+            pusher[0].pose.theta += turn(i);
             let mut one = [*particle];
             dynamics.step(&turned, &[FRICTION], &mut one, &mut own_work);
             [*particle] = one;

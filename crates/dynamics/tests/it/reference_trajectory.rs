@@ -10,7 +10,12 @@ use stickslip_testkit::data_root;
 const PUSHES: f64 = 1e-6 * 0.5 * 9.81 / 30.0;
 
 /// Bodies in the order of the mask's bits.
-const BODIES: [Body; 4] = [Body::Pusher, Body::Fixel(0), Body::Fixel(1), Body::Fixel(2)];
+const BODIES: [Body; 4] = [
+    Body::Finger(0),
+    Body::Fixel(0),
+    Body::Fixel(1),
+    Body::Fixel(2),
+];
 
 struct Row {
     frame: u32,

@@ -1,8 +1,8 @@
 //! Rollouts: many trajectories side by side are those that come step by step.
 
 use stickslip_dynamics::{
-    Dynamics, Feet, Fixel, Friction, Level, Object, Outcome, Part, Particle, Pose, Pusher,
-    PusherMotion, RolloutEnd, RolloutError, RolloutStart, Scene, Shape, StepInput, StepWork, Twist,
+    Dynamics, Feet, FingerMotion, Fixel, Friction, Level, Object, Outcome, Part, Particle, Pose,
+    Pusher, RolloutEnd, RolloutError, RolloutStart, Scene, Shape, StepInput, StepWork, Twist,
 };
 
 const STEPS: usize = 60;
@@ -33,7 +33,7 @@ fn scene() -> Scene {
         },
         feet: Feet::Tripod { angle: 0.0 },
         pusher: Pusher {
-            shape: disc(0.005),
+            fingers: vec![disc(0.005)],
             stall_force: Some(20.0),
         },
         fixels: vec![fixel(0.05, 0.015), fixel(0.05, -0.015)],
@@ -100,18 +100,18 @@ fn alone(dynamics: &Dynamics, i: usize) -> (Vec<Pose>, RolloutEnd) {
         if length > 0.0 {
             direction = [x / length, y / length];
         }
-        let motion = PusherMotion {
+        let motion = FingerMotion {
             pose: pair[0],
             twist: pair[0].twist_to(pair[1], H),
             direction,
         };
         let input = StepInput {
             h: H,
-            pusher: Some(motion),
+            pusher: Some(motion.into()),
         };
         let [report] = dynamics.step(&input, &[friction], &mut particle, &mut work);
         end.unsolved += u32::from(report.outcome != Outcome::Solved);
-        end.pusher_lag = particle[0].pusher_lag;
+        end.pusher_lag = particle[0].pusher_lag[0];
         let lag = libm::hypot(end.pusher_lag[0], end.pusher_lag[1]);
         end.most_pusher_lag = end.most_pusher_lag.max(lag);
         trajectory.push(particle[0].pose);
@@ -197,6 +197,7 @@ fn input_that_cannot_be_simulated_is_refused() {
     let shape = RolloutError::Shape {
         starts: 2,
         poses: 121,
+        fingers: 1,
     };
     assert_eq!(refused(H, &starts, &pushers[..121]), shape);
     assert!(matches!(

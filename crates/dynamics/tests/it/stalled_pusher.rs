@@ -4,7 +4,7 @@
 use crate::common;
 use crate::common::{FRAME, Rng, at, disc, fixel, pushing, square, square_scene, step};
 use stickslip_dynamics::{
-    Dynamics, Feet, Friction, Object, Outcome, Particle, Pose, Pusher, PusherMotion, Scene,
+    Dynamics, Feet, FingerMotion, Friction, Object, Outcome, Particle, Pose, Pusher, Scene,
     StepInput, StepWork, Twist,
 };
 
@@ -27,7 +27,7 @@ fn squeezed() -> (Scene, Particle) {
             angle: std::f64::consts::FRAC_PI_2,
         },
         pusher: Pusher {
-            shape: disc(0.008),
+            fingers: vec![disc(0.008)],
             stall_force: Some(25.0),
         },
         fixels: vec![fixel(disc(0.006), 0.06909, 0.01542)],
@@ -89,7 +89,7 @@ fn squeezed_object_does_not_creep() {
 fn pusher_gives_way_to_what_presses_on_it_whatever_its_last_direction() {
     for direction in [[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.6, -0.8]] {
         let mut input = pushing(FRAME, 0.020_982 - 0.008 + 2e-4, -0.003, 0.0);
-        input.pusher.as_mut().unwrap().direction = direction;
+        input.pusher.as_mut().unwrap()[0].direction = direction;
         for stall_force in [Some(25.0), None] {
             let (mut scene, mut particle) = squeezed();
             scene.pusher.stall_force = stall_force;
@@ -121,7 +121,7 @@ fn lag_is_a_pusher_that_starts_where_it_stands() {
     for _ in 0..200 {
         let mut scene = square_scene(vec![fixel(disc(0.005), 0.0299, rng.within(-0.02, 0.02))]);
         scene.pusher = Pusher {
-            shape: square(0.1),
+            fingers: vec![square(0.1)],
             stall_force: Some(rng.within(0.5, 30.0)),
         };
         let dynamics = Dynamics::new(scene);
@@ -142,18 +142,19 @@ fn lag_is_a_pusher_that_starts_where_it_stands() {
             };
             StepInput {
                 h: FRAME,
-                pusher: Some(PusherMotion {
-                    pose,
-                    twist,
-                    direction: [cos, sin],
-                }),
+                pusher: Some(
+                    FingerMotion {
+                        pose,
+                        twist,
+                        direction: [cos, sin],
+                    }
+                    .into(),
+                ),
             }
         };
         let advance = |input: &StepInput, pusher_lag: [f64; 2]| {
-            let mut particle = Particle {
-                pusher_lag,
-                ..at(Pose::default())
-            };
+            let mut particle = at(Pose::default());
+            particle.pusher_lag[0] = pusher_lag;
             let (mut work, mut one) = (StepWork::<1>::default(), particle);
             let report = step(&dynamics, input, &mut one, &mut work);
             particle = one;
@@ -168,7 +169,7 @@ fn lag_is_a_pusher_that_starts_where_it_stands() {
             pose_distance(&dynamics, &behind.1.pose, &ahead.1.pose) < 1e-9,
             "{behind:?} {ahead:?}"
         );
-        let [x, y] = behind.1.pusher_lag;
+        let [x, y] = behind.1.pusher_lag[0];
         assert!((x.hypot(y) - FRAME * behind.2).abs() < 1e-15);
         yielded += u32::from(behind.2 > 1e-6);
     }

@@ -42,11 +42,11 @@ pub(crate) fn track(
         let visual = pose.is_some_and(|pose| camera.see(&mut belief, pose, &noise));
         let last = prepared.schedule.step(row - 1).last();
         let touch = touch(setup, step.work(), last, &estimate.rows[row - 1]);
-        let (contact_pusher, contact_fixels) = touch.unzip();
+        let (contact_pusher, contact_others) = touch.unzip();
         let [unsolved, failed] = step.since.counts();
         estimate.rows[row] = EstimateRow {
             contact_pusher,
-            contact_fixels,
+            contact_others,
             visual,
             unsolved: Some(unsolved),
             failed: Some(failed),
@@ -100,7 +100,7 @@ mod tests {
                 },
                 feet: Feet::Tripod { angle: 0.0 },
                 pusher: Pusher {
-                    shape: disc(0.005),
+                    fingers: vec![disc(0.005)],
                     stall_force: Some(20.0),
                 },
                 fixels: Vec::new(),

@@ -145,11 +145,13 @@ impl<'a> LinearisedStep<'a> {
     fn note(&mut self, root: &StateMatrix, moved_before: bool) {
         let moved = moved_before || self.moves();
         let presses = |body| self.work.normal_impulse(0, body) > 0.0;
-        let mut fixels = 0..self.setup.scene.fixels.len();
+        let scene = &self.setup.scene;
+        let mut fixels = 0..scene.fixels.len();
+        let mut fingers = 0..scene.pusher.fingers.len();
         let took_part = &mut self.since.took_part;
         took_part.mu_s |= moved;
         took_part.d_tri |= moved;
-        took_part.mu_p |= presses(Body::Pusher);
+        took_part.mu_p |= fingers.any(|i| presses(Body::Finger(i)));
         took_part.mu_f |= fixels.any(|j| presses(Body::Fixel(j)));
         for point in 0..POINTS {
             // a point that equals the mean is not counted again

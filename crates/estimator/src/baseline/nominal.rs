@@ -63,7 +63,7 @@ fn advance(
     worst
 }
 
-/// Contacts of the first particle with the pusher and with each fixel in the `last` substep to a
+/// Contacts of the first particle with the pusher and with each other body in the `last` substep to a
 /// row: 1 or 0 each. A row that no step leads to touches what the row `before` did.
 pub(super) fn touch<const W: usize>(
     setup: &Setup,
@@ -73,33 +73,32 @@ pub(super) fn touch<const W: usize>(
 ) -> Option<(f64, Vec<f64>)> {
     match last {
         Some(step) => Some(touch_flags(setup, work, step.h)),
-        None => before.contact_pusher.zip(before.contact_fixels.clone()),
+        None => before.contact_pusher.zip(before.contact_others.clone()),
     }
 }
 
-/// Contacts of the first particle with the pusher and with each fixel after a step of `h` seconds:
-/// 1 or 0 each.
+/// Contacts of the first particle with the pusher and with each fixel and other finger after a step
+/// of `h` seconds: 1 or 0 each.
 fn touch_flags<const W: usize>(setup: &Setup, work: &StepWork<W>, h: f64) -> (f64, Vec<f64>) {
     let flag = |touches: bool| f64::from(u8::from(touches));
-    let fixels = 0..setup.scene.fixels.len();
     let touch_impulse = setup.tactile.touch_force * h;
-    let pusher = flag(work.normal_impulse(0, Body::Pusher) > 0.0);
-    (
-        pusher,
-        fixels
-            .map(|j| flag(work.normal_impulse(0, Body::Fixel(j)) > touch_impulse))
-            .collect(),
-    )
+    let least = |body: Body| match body {
+        Body::Finger(_) => 0.0,
+        Body::Fixel(_) => touch_impulse,
+    };
+    let touches = |body: Body| flag(work.normal_impulse(0, body) > least(body));
+    let others = (0..setup.scene.others()).map(|j| touches(setup.scene.other(j)));
+    (touches(Body::Finger(0)), others.collect())
 }
 
 fn row(particle: &Particle, touch: Option<(f64, Vec<f64>)>, outcome: Outcome) -> EstimateRow {
-    let (contact_pusher, contact_fixels) = touch.unzip();
+    let (contact_pusher, contact_others) = touch.unzip();
     let pose: Pose = particle.pose;
     EstimateRow {
         pose: Some(pose),
         twist: Some(particle.twist),
         contact_pusher,
-        contact_fixels,
+        contact_others,
         unsolved: Some(u32::from(outcome != Outcome::Solved)),
         failed: Some(u32::from(outcome == Outcome::Failed)),
         ..EstimateRow::default()

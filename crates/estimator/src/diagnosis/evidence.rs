@@ -122,13 +122,46 @@ impl<'a> Evidence<'a> {
             .then(|| before.interpolate(after, (time - t0) / (t1 - t0)))
     }
 
-    /// Gap of object and pusher at `row` if its object pose is `delay` late (m).
+    /// Gap of object and pusher at `row` if its object pose is `delay` late (m); of a hand that of
+    /// the nearest finger.
     pub fn pusher_gap(&self, row: usize, delay: f64) -> Option<f64> {
-        let (object, pusher) = (
-            self.log.object[row]?,
-            self.pusher_at(self.log.time[row] - delay)?,
-        );
-        self.gap_to(object, &self.setup.scene.pusher.shape, pusher)
+        self.changed_gap(row, delay, |object, pusher| (object, pusher))
+    }
+
+    /// That gap with the poses of object and finger changed.
+    pub fn changed_gap(
+        &self,
+        row: usize,
+        delay: f64,
+        change: impl Fn(Pose, Pose) -> (Pose, Pose),
+    ) -> Option<f64> {
+        let time = self.log.time[row] - delay;
+        let object = self.log.object[row]?;
+        let gap_to = |shape: &Shape, finger: Pose| {
+            let (object, finger) = change(object, finger);
+            self.gap_to(object, shape, finger)
+        };
+        let (first, others) = self.setup.scene.pusher.fingers.split_first()?;
+        let mut gap = gap_to(first, self.pusher_at(time)?)?;
+        for (shape, poses) in others.iter().zip(&self.log.other_fingers) {
+            gap = gap.min(gap_to(shape, self.at(poses, time)?)?);
+        }
+        Some(gap)
+    }
+
+    /// A finger at `time` by its `poses`, linear between those about it.
+    fn at(&self, poses: &[Option<Pose>], time: f64) -> Option<Pose> {
+        let split = self.log.time.partition_point(|t| *t < time);
+        let after = (split..poses.len()).find_map(|row| Some((self.log.time[row], poses[row]?)));
+        let before = (0..split)
+            .rev()
+            .find_map(|row| Some((self.log.time[row], poses[row]?)));
+        match (before, after) {
+            (_, Some((t1, after))) if t1 - time < 1e-9 => Some(after),
+            (Some((t0, before)), Some((t1, after))) => bridged(t0, t1, self.pusher_interval)
+                .then(|| before.interpolate(after, (time - t0) / (t1 - t0))),
+            _ => None,
+        }
     }
 
     /// Gap of object and fixel `fixel` when the camera's poses of `row` were taken (m).
@@ -254,6 +287,11 @@ pub(super) fn unwrapped(log: &Log) -> Log {
     Log {
         object: unwrapped(&log.object),
         pusher: unwrapped(&log.pusher),
+        other_fingers: log
+            .other_fingers
+            .iter()
+            .map(|poses| unwrapped(poses))
+            .collect(),
         ..log.clone()
     }
 }

@@ -173,10 +173,6 @@ fn distance(gaps: &[f64]) -> f64 {
 /// Gaps (m) while the object moves, with the poses changed.
 fn gaps(evidence: &Evidence<'_>, change: impl Fn(Pose, Pose) -> (Pose, Pose)) -> Vec<f64> {
     let rows = (0..evidence.log.len()).filter(|&row| evidence.moving[row]);
-    let gap = |row: usize| {
-        let pusher = evidence.pusher_at(evidence.log.time[row] - evidence.latency())?;
-        let (object, pusher) = change(evidence.log.object[row]?, pusher);
-        evidence.gap_to(object, &evidence.setup.scene.pusher.shape, pusher)
-    };
+    let gap = |row: usize| evidence.changed_gap(row, evidence.latency(), &change);
     rows.filter_map(gap).collect()
 }

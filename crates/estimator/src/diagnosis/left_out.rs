@@ -7,7 +7,7 @@ use crate::pusher::jumps::accepted;
 
 pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
     let log = evidence.log;
-    let accepted = accepted(log, evidence.setup.camera.as_ref());
+    let accepted = accepted(&log.time, &log.pusher, evidence.setup.camera.as_ref());
     let is_left_out = |row: &usize| log.pusher[*row].is_some() && accepted[*row].is_none();
     let left_out: Vec<usize> = (0..log.len()).filter(is_left_out).collect();
     let first = left_out.first();

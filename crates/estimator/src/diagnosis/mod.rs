@@ -52,7 +52,7 @@ use crate::setup::Setup;
 /// # let (object, finger) = (disc(0.03)?, disc(0.005)?);
 /// # let nominal = Friction { mu_s: 0.3, mu_p: 0.3, mu_f: 0.3, d_tri: 0.02 };
 /// # let object = Object { mass: 0.5, inertia: 2e-4, shape: object };
-/// # let pusher = Pusher { shape: finger, stall_force: None };
+/// # let pusher = Pusher { fingers: vec![finger], stall_force: None };
 /// # let scene = Scene { gravity: 9.81, object, feet: Feet::Tripod { angle: 0.0 }, pusher, fixels: vec![], nominal };
 /// # let setup = Setup { scene, stall_force_assumed: false, camera: None, tactile: Default::default(), wrench: None, filter: Default::default(), uncertainty: Default::default(), start: None };
 /// let in_millimetres = Log {

@@ -1,4 +1,5 @@
 //! Check of each tactile sensor against the gap of its fixel: sensor k is on the k-th fixel.
+//! Those of a hand's fingers are not checked.
 
 use super::evidence::{Evidence, median, mm};
 use super::finding::{Finding, Subject};
@@ -12,7 +13,8 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
         evidence.log.tactile.len(),
         evidence.setup.scene.fixels.len(),
     );
-    if sensors > fixels {
+    let of_fingers = evidence.setup.scene.sensors() - fixels;
+    if sensors > fixels + of_fingers {
         let found = format!(
             "the log has {}, the scene {}",
             counted(sensors as u64, "sensor"),
@@ -24,7 +26,13 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
             "give each sensor its [[fixel]], in the same order",
         )];
     }
-    let judged = (0..sensors).map(|sensor| judge(evidence, sensor));
+    let judged = (0..sensors.min(fixels)).map(|sensor| judge(evidence, sensor));
+    let moving = (fixels..sensors).map(|sensor| {
+        Finding::ok(
+            Subject::Sensor(sensor + 1),
+            "not checked: it is on a finger",
+        )
+    });
     let without = (sensors > 0 && sensors < fixels).then(|| {
         let found = format!(
             "the log has {}, the scene {}: sensor k is on the k-th fixel, the others have none",
@@ -33,7 +41,7 @@ pub(super) fn check(evidence: &Evidence<'_>) -> Vec<Finding> {
         );
         Finding::ok(Subject::Sensor(sensors + 1), found)
     });
-    judged.chain(without).collect()
+    judged.chain(moving).chain(without).collect()
 }
 
 fn judge(evidence: &Evidence<'_>, sensor: usize) -> Finding {

@@ -16,7 +16,7 @@ use crate::particle::estimate::sums::Reference;
 use crate::particle::model::ContactModel;
 use crate::particle::sensor::camera_gate::CameraGate;
 use crate::particle::sensor::observation::{Observation, PoseAt};
-use crate::particle::sensor::pusher_likelihood::{Push, speed};
+use crate::particle::sensor::pusher_likelihood::{Push, fastest};
 use crate::particle::set::history::PoseHistory;
 use crate::particle::set::observer::Observer;
 use crate::particle::set::view::ParticleView;
@@ -286,7 +286,7 @@ impl<'o> ContactFilter<'o> {
             && drive.moves
             && model == FilterModel::Paper
         {
-            plan.touching = TOUCHING.max(speed(&pusher.twist) * plan.duration());
+            plan.touching = TOUCHING.max(fastest(&pusher) * plan.duration());
         }
         let least = self.filter.model().setup().uncertainty.pusher_lag;
         plan.stopped = self.push.stops(&drive, plan.duration(), least);

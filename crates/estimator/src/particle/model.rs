@@ -48,6 +48,7 @@ impl<'o> ContactModel<'o> {
         history: usize,
     ) -> Self {
         let columns = Columns::new(model, setup.scene.fixels.len(), history)
+            .with_fingers(setup.scene.pusher.fingers.len())
             .with_force(setup.wrench.is_some());
         Self {
             transition: Transition {
@@ -166,7 +167,7 @@ impl<'o> ContactModel<'o> {
         }
         let sensor = TouchChannel::new(&setup.tactile).start::<1>();
         let sensor = sensor.fields().map(|number| number.0[0]);
-        for j in 0..columns.fixels() {
+        for j in 0..columns.sensors() {
             write(block, columns.sensor(j), i, sensor.each_ref());
         }
     }

@@ -4,7 +4,6 @@
 use stickslip_dynamics::Pose;
 
 use crate::angle::nearest_winding;
-use crate::log::Log;
 use crate::setup::Camera;
 use crate::tuning::{JUMP_SIGMAS, LEAST_JUMP, MOST_ACCELERATION, PART_RADIUS};
 
@@ -24,11 +23,15 @@ pub(crate) struct JumpGate {
     left_out: u32,
 }
 
-/// Returns the accepted pusher poses of `log`, row by row, angles unwrapped. Without a `camera`
-/// poses count as exact.
-pub(crate) fn accepted(log: &Log, camera: Option<&Camera>) -> Vec<Option<Pose>> {
+/// Returns the accepted ones of a finger's `poses`, row by row, angles unwrapped. Without a
+/// `camera` poses count as exact.
+pub(crate) fn accepted(
+    time: &[f64],
+    poses: &[Option<Pose>],
+    camera: Option<&Camera>,
+) -> Vec<Option<Pose>> {
     let mut gate = JumpGate::new(camera);
-    let rows = log.time.iter().zip(&log.pusher);
+    let rows = time.iter().zip(poses);
     rows.map(|(time, pose)| gate.pass(*time, *pose)).collect()
 }
 

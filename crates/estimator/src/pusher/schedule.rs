@@ -1,8 +1,9 @@
 //! Steps of a log: [`Schedule`], the substeps that lead from each row to the next.
 
-use stickslip_dynamics::{PusherMotion, StepInput};
+use stickslip_dynamics::{FingerMotion, PusherMotion, StepInput};
 
 use crate::pusher::track::PusherTrack;
+use crate::pusher::tracked_pose::keep_directions;
 use crate::tuning::{LONGEST_STEP, SHORTEST_STEP, SPLIT_TO};
 
 /// The substeps of every step of a log.
@@ -17,7 +18,7 @@ impl Schedule {
     /// row that comes less than half a millisecond after the last step has none: the next step
     /// begins where the last one ended.
     pub fn new(time: &[f64], track: &PusherTrack, substeps: Option<u32>) -> Self {
-        let mut direction = track.first_direction(time);
+        let mut directions = track.first_directions(time);
         let mut from = 0;
         let steps = (1..time.len()).map(|to| {
             let h = time[to] - time[from];
@@ -25,10 +26,8 @@ impl Schedule {
                 return Vec::new();
             }
             let h = track.step_length(to, h);
-            let motion = track.motion(from..to, h, direction);
-            if let Some(motion) = &motion {
-                direction = motion.direction;
-            }
+            let motion = track.motion(from..to, h, &directions);
+            keep_directions(motion.as_ref(), &mut directions);
             from = to;
             split(h, motion, substeps).collect()
         });
@@ -70,10 +69,11 @@ pub(crate) fn split(
     let parts = parts.unwrap_or_else(|| parts_of(h));
     let h = h / f64::from(parts);
     let at = move |part: u32| {
-        motion.map(|m| PusherMotion {
+        let advanced = |m: FingerMotion| FingerMotion {
             pose: m.pose.advance(m.twist, h * f64::from(part)),
             ..m
-        })
+        };
+        motion.map(|pusher| pusher.map(advanced))
     };
     (0..parts).map(move |part| StepInput {
         h,

@@ -7,7 +7,6 @@ use stickslip_dynamics::Pose;
 use stickslip_filter::{AxisEstimate, ConstantVelocity};
 
 use crate::error::RunError;
-use crate::log::Log;
 use crate::pusher::jumps::accepted;
 use crate::pusher::tracked_pose::{TrackedPose, bridged};
 use crate::quantile::quantile;
@@ -17,15 +16,16 @@ use crate::tuning::{INITIAL_VELOCITY_STD, LARGER_NOISE_GAIN, TELLING_INTERVALS};
 /// Larger noises that are tried, as multiples of the nominal one.
 const LARGER: [f64; 7] = [2.0, 3.0, 4.5, 7.0, 10.0, 15.0, 25.0];
 
-/// Tracks the pusher of `log`, one pose per row; without a `camera` its poses count as exact.
+/// Tracks a finger by its `poses`, one per row; without a `camera` they count as exact.
 pub(crate) fn smoothed_track(
-    log: &Log,
+    time: &[f64],
+    poses: &[Option<Pose>],
     camera: Option<&Camera>,
 ) -> Result<Vec<Option<TrackedPose>>, RunError> {
-    let seen = accepted(log, camera);
-    let mut rows = vec![None; log.len()];
-    for span in spans(&log.time, &seen) {
-        let poses = track_span(&log.time[span.clone()], &seen[span.clone()], camera)?;
+    let seen = accepted(time, poses, camera);
+    let mut rows = vec![None; time.len()];
+    for span in spans(time, &seen) {
+        let poses = track_span(&time[span.clone()], &seen[span.clone()], camera)?;
         for (row, pose) in rows[span].iter_mut().zip(poses) {
             *row = Some(pose);
         }

@@ -1,10 +1,13 @@
-//! The pusher at one row of its track: [`TrackedPose`], and the motion between two of them.
+//! A finger at one row of its track: [`TrackedPose`], and the motion between two of them.
 
 use crate::tuning::{BRIDGED_INTERVALS, LONGEST_BRIDGE, STANDSTILL, TELLING_SPEED};
-use stickslip_dynamics::{Pose, PusherMotion};
+use stickslip_dynamics::{FingerMotion, MOST_FINGERS, Pose, PusherMotion};
 use stickslip_filter::AxisEstimate;
 
-/// The pusher at one row of its track.
+/// Unit vector of each finger's last motion.
+pub(crate) type Directions = [[f64; 2]; MOST_FINGERS];
+
+/// A finger at one row of its track.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrackedPose {
     /// Pose.
@@ -36,22 +39,34 @@ impl TrackedPose {
     }
 }
 
-/// Returns the length (s) of the step to a row `h` seconds after the last one. A step that catches
-/// up with a held pusher lasts as long as the pusher took: within one row it would throw the object
-/// ahead.
-pub(crate) fn step_length(next: Option<TrackedPose>, h: f64) -> f64 {
-    next.map_or(h, |next| h.max(next.held))
+/// Returns true if a finger moves, as far as its track can tell.
+pub(crate) fn moves(fingers: &[Option<TrackedPose>]) -> bool {
+    fingers.iter().flatten().any(TrackedPose::moves)
 }
 
-/// The pusher during a step of length `h` (s) from `now` to `next`; `last` is its last direction of
-/// motion.
+/// Returns the length (s) of the step to a row `h` seconds after the last one, where the fingers
+/// are `next`. A step that catches up with a held finger lasts as long as the finger took: within
+/// one row it would throw the object ahead.
+pub(crate) fn step_length(next: &[Option<TrackedPose>], h: f64) -> f64 {
+    let held = next.iter().flatten().map(|next| next.held);
+    held.fold(h, f64::max)
+}
+
+/// The pusher during a step of length `h` (s) in which its fingers go from `now` to `next`; `last`
+/// has their last directions of motion. `None` where a finger is off the plane.
 pub(crate) fn motion(
-    now: Option<TrackedPose>,
-    next: Option<TrackedPose>,
+    now: &[Option<TrackedPose>],
+    next: &[Option<TrackedPose>],
     h: f64,
-    last: [f64; 2],
+    last: &Directions,
 ) -> Option<PusherMotion> {
-    let (now, next) = (now?, next?);
+    let fingers = now.iter().zip(next).zip(last);
+    PusherMotion::new(
+        fingers.map(|((now, next), last)| Some(finger_motion((*now)?, (*next)?, h, *last))),
+    )
+}
+
+fn finger_motion(now: TrackedPose, next: TrackedPose, h: f64, last: [f64; 2]) -> FingerMotion {
     // the direction of the step would contain the corrections of a causal track, which may point
     // backwards
     let [vx, vy] = next.velocity;
@@ -60,11 +75,21 @@ pub(crate) fn motion(
     } else {
         last
     };
-    Some(PusherMotion {
+    FingerMotion {
         pose: now.pose,
         twist: now.pose.twist_to(next.pose, h),
         direction,
-    })
+    }
+}
+
+/// Keeps the directions of the fingers of a step, where there is a pusher.
+pub(crate) fn keep_directions(motion: Option<&PusherMotion>, directions: &mut Directions) {
+    for (direction, finger) in directions
+        .iter_mut()
+        .zip(motion.into_iter().flat_map(|m| &**m))
+    {
+        *direction = finger.direction;
+    }
 }
 
 /// Returns true if a gap from `from` to `to` (s) without a pusher pose is bridged. Poses come at an

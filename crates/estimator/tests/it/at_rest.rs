@@ -132,7 +132,7 @@ fn contact_whose_sensor_goes_on_reading_one_stays_and_the_spread_does_not_grow()
     log.tactile = vec![log.time.iter().map(|time| Some(*time >= reaches)).collect()];
     for tracking in TRACKINGS {
         let rows = rows(&setup, &log, tracking, 15);
-        let touches = |row: &EstimateRow| row.contact_fixels.as_ref().expect("fixels")[0];
+        let touches = |row: &EstimateRow| row.contact_others.as_ref().expect("fixels")[0];
         let spread = |row: &EstimateRow| {
             let spread = row.spread.expect("a spread").pose;
             spread.x.hypot(spread.y)

@@ -169,7 +169,7 @@ fn slips_and_contact_agree() {
     let (_, estimate) = head_on(FilterModel::Robust);
     for row in &estimate.rows {
         let contacts = std::iter::once(row.contact_pusher.expect("a share"))
-            .chain(row.contact_fixels.iter().flatten().copied());
+            .chain(row.contact_others.iter().flatten().copied());
         for (contact, slip) in contacts.zip(row.slip.as_ref().expect("bodies")) {
             let sum = slip.stick + slip.left + slip.right;
             assert!((sum - contact).abs() < 1e-9, "{slip:?}, {contact}");
@@ -230,7 +230,7 @@ fn spread_of_a_flush_square(orientation_std: f64) -> f64 {
         Shape::new(vec![Part::Polygon { vertices }]).expect("a rectangle")
     };
     setup.scene.object.shape = rectangle(0.025, 0.025);
-    setup.scene.pusher.shape = rectangle(0.004, 0.02);
+    setup.scene.pusher.fingers[0] = rectangle(0.004, 0.02);
     let camera = setup.camera.as_mut().expect("a camera");
     camera.pusher_orientation_std = orientation_std;
     let pusher = |time: f64| Some(Pose::new(-0.0295 + SPEED * (time - 0.4).max(0.0), 0.0, 0.0));

@@ -9,6 +9,7 @@ mod extended_kalman;
 mod fast_pusher;
 mod force;
 mod friction_parameters;
+mod hand;
 mod jam;
 mod known_friction;
 mod moved_unseen;

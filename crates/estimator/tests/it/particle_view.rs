@@ -77,7 +77,7 @@ fn setup() -> Setup {
         },
         feet: Feet::Tripod { angle: 0.0 },
         pusher: Pusher {
-            shape: disc(0.005),
+            fingers: vec![disc(0.005)],
             stall_force: None,
         },
         fixels: Vec::new(),

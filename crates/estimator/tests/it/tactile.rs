@@ -38,7 +38,7 @@ fn setup(aside: f64) -> Setup {
         },
         feet: Feet::Tripod { angle: 0.3 },
         pusher: Pusher {
-            shape: disc(),
+            fingers: vec![disc()],
             stall_force: Some(20.0),
         },
         fixels: vec![Fixel {
@@ -86,6 +86,7 @@ fn log(readings: impl Fn(usize) -> bool) -> Log {
     Log {
         object_covariance: Vec::new(),
         pusher: pusher.collect(),
+        other_fingers: Vec::new(),
         object: object.collect(),
         tactile,
         force: vec![None; time.len()],

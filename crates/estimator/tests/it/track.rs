@@ -209,10 +209,7 @@ fn causal_direction_stays_that_of_the_motion_after_it_stops() {
         let log = log(seed);
         let schedule = Schedule::new(&log.time, &causal(&log, Some(&CAMERA)), None);
         for row in 70..239 {
-            let [x, y] = schedule.step(row)[0]
-                .pusher
-                .expect("on the plane")
-                .direction;
+            let [x, y] = schedule.step(row)[0].pusher.expect("on the plane")[0].direction;
             assert!(x > 0.98, "seed {seed}, row {row}: ({x}, {y})");
         }
     }
@@ -258,7 +255,7 @@ fn recoil_of_an_exactly_known_pusher_tells_no_direction() {
         let directions = schedule
             .step(row)
             .iter()
-            .map(|input| input.pusher.expect("a pusher").direction);
+            .map(|input| input.pusher.expect("a pusher")[0].direction);
         assert!(
             directions
                 .into_iter()

@@ -46,7 +46,7 @@ fn tracked(setup: &Setup, log: &Log, options: &TrackerOptions) -> Estimate {
     Estimate {
         rows: rows.collect(),
         time: log.time.clone(),
-        fixels: 1,
+        others: 1,
         has_tripod: true,
     }
 }

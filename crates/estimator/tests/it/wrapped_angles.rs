@@ -16,7 +16,7 @@ fn in_one_turn(angle: f64) -> f64 {
 fn push() -> (Setup, Log) {
     let bar = [[-5e-3, -0.02], [5e-3, -0.02], [5e-3, 0.02], [-5e-3, 0.02]];
     let mut setup = setup(&[]);
-    setup.scene.pusher.shape = Shape::new(vec![Part::Polygon {
+    setup.scene.pusher.fingers[0] = Shape::new(vec![Part::Polygon {
         vertices: bar.to_vec(),
     }])
     .expect("a bar");

@@ -85,7 +85,7 @@ impl RandomScene {
                 shape: layout.object.shape,
             },
             pusher: Pusher {
-                shape: layout.pusher,
+                fingers: vec![layout.pusher],
                 stall_force: (!rng.one_in(6)).then_some(stall_force),
             },
             fixels: layout
@@ -138,7 +138,7 @@ impl fmt::Display for RandomScene {
         writeln!(f, "{:?}, {:?} pusher poses", self.kind, self.pusher_poses)?;
         writeln!(f, "mass {mass} kg, {:?}", scene.feet)?;
         writeln!(f, "object {:?}", shape.parts())?;
-        writeln!(f, "pusher {:?}", scene.pusher.shape.parts())?;
+        writeln!(f, "pusher {:?}", scene.pusher.fingers[0].parts())?;
         for Fixel { pose, shape } in &scene.fixels {
             writeln!(f, "fixel {pose:?} {:?}", shape.parts())?;
         }

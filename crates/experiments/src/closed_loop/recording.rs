@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 
 use stickslip::Log;
 use stickslip_dynamics::{
-    Body, Dynamics, Friction, Particle, Pose, PusherMotion, StepInput, StepWork, Twist,
+    Body, Dynamics, FingerMotion, Friction, Particle, Pose, StepInput, StepWork, Twist,
 };
 
 use super::random_scene::{PusherPoses, RandomScene};
@@ -158,11 +158,14 @@ impl TrueRun {
     fn step(&mut self, twist: Twist, h: f64) {
         let input = StepInput {
             h,
-            pusher: Some(PusherMotion {
-                pose: self.pusher,
-                twist,
-                direction: self.direction,
-            }),
+            pusher: Some(
+                FingerMotion {
+                    pose: self.pusher,
+                    twist,
+                    direction: self.direction,
+                }
+                .into(),
+            ),
         };
         let _ = self.dynamics.step(
             &input,
@@ -172,7 +175,11 @@ impl TrueRun {
         );
         // it stays behind its command, and no lag is left to the particle
         let (problem, speed) = (self.work.problem(0), self.work.solution(0).pusher_yield);
-        let [x, y] = problem.stall.map_or([0.0; 2], |stall| stall.direction);
+        let [x, y] = problem
+            .contacts
+            .iter()
+            .find_map(|c| c.yields)
+            .unwrap_or_default();
         let moved = Twist {
             vx: twist.vx - speed * x,
             vy: twist.vy - speed * y,

@@ -244,5 +244,5 @@ impl LoopTally {
 /// Returns true if the pusher, or a fixel, presses on the object.
 fn presses(problem: &StepProblem, solution: &StepSolution, pusher: bool) -> bool {
     let mut contacts = problem.contacts.iter().zip(&solution.normal);
-    contacts.any(|(contact, p_n)| contact.on_pusher == pusher && *p_n > 0.0)
+    contacts.any(|(contact, p_n)| contact.yields.is_some() == pusher && *p_n > 0.0)
 }

@@ -97,10 +97,12 @@ impl Stepper {
             unknowns = step.unknowns;
             ended = [LemkeEnd::Ray, LemkeEnd::Inexact].map(|end| step.rigid == end);
             rollout.rests += usize::from(step.rests);
-            let direction = problem.stall.map_or([0.0; 2], |stall| stall.direction);
+            let mut yields = problem.contacts.iter().filter_map(|contact| contact.yields);
+            let direction = yields.next().filter(|_| problem.stall.is_some());
+            let direction = direction.unwrap_or_default();
             next[0].pose = particle.pose.advance(step.twist, input.h);
             next[0].twist = step.twist;
-            next[0].pusher_lag = direction.map(|d| d * step.pusher_yield * input.h);
+            next[0].pusher_lag[0] = direction.map(|d| d * step.pusher_yield * input.h);
         }
         rollout.steps += 1;
         rollout.infeasible += usize::from(ended[0]);

@@ -129,8 +129,7 @@ impl PolygonCone {
             *lcp.entry(i + 3, i) = contact.mu;
             lcp.couple(i + 1, i + 3, 1.0);
             lcp.couple(i + 2, i + 3, 1.0);
-            if let Some(stall) = problem.stall.filter(|_| contact.on_pusher) {
-                let [dx, dy] = stall.direction;
+            if let Some([dx, dy]) = contact.yields.filter(|_| problem.stall.is_some()) {
                 lcp.couple(i, last, x * dx + y * dy);
                 lcp.couple(i + 1, last, x * dy - y * dx);
                 lcp.couple(i + 2, last, y * dx - x * dy);
@@ -142,8 +141,8 @@ impl PolygonCone {
             (first..slip).for_each(|j| lcp.couple(j, slip, 1.0));
             lcp.offset[slip] = foot.bound / problem.mass;
         }
-        if let Some(stall) = problem.stall {
-            lcp.offset[last] = stall.impulse / problem.mass;
+        if let Some(impulse) = problem.stall {
+            lcp.offset[last] = impulse / problem.mass;
         }
         lcp
     }

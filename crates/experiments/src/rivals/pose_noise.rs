@@ -124,7 +124,7 @@ impl RowStep {
         let h = substeps.iter().map(|step| step.h).sum();
         let pusher = substeps.last().and_then(|step| step.pusher);
         let pusher = pusher.filter(|_| predictor.schedule().driven(row - 1));
-        let way = pusher.map(|pusher| h * libm::hypot(pusher.twist.vx, pusher.twist.vy));
+        let way = pusher.map(|pusher| h * libm::hypot(pusher[0].twist.vx, pusher[0].twist.vy));
         Self {
             substeps,
             h,
@@ -321,7 +321,7 @@ fn disturbed(pose: Pose, std: Pose, [x, y, theta]: [f64; 3]) -> Pose {
 fn numbers(particle: &mut Particle) -> impl Iterator<Item = &mut f64> {
     let body = particle.pose.fields_mut().into_iter();
     let body = body.chain(particle.twist.fields_mut());
-    let body = body.chain(particle.pusher_lag.each_mut());
+    let body = body.chain(particle.pusher_lag[0].each_mut());
     body.chain(particle.warm.fields_mut())
 }
 

@@ -217,7 +217,7 @@ fn start(outline: &Outline, told: &Setup, seed: u64, k: u32) -> Start {
     let inward = [-(by - ay) / length, (bx - ax) / length];
     let contact = [ax + share * (bx - ax), ay + share * (by - ay)];
     let direction = libm::atan2(inward[1], inward[0]) + STEEPEST * (2.0 * draw.uniform(k, 2) - 1.0);
-    let radius = told.scene.pusher.shape.bounding_radius();
+    let radius = told.scene.pusher.fingers[0].bounding_radius();
     let back = CLEARANCE;
     let centre = [
         contact[0] - radius * inward[0] - back * libm::cos(direction),

@@ -82,7 +82,7 @@ fn centre_of_friction_is_found_and_written() {
 fn offset_of_the_pusher_is_found() {
     let mut truth = setup();
     let centre = [0.001, -0.0006];
-    truth.scene.pusher.shape = Shape::new(vec![Part::Disc {
+    truth.scene.pusher.fingers[0] = Shape::new(vec![Part::Disc {
         radius: 0.005,
         centre,
     }])

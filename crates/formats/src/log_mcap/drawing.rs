@@ -65,12 +65,12 @@ pub(crate) fn bodies<'a>(
         Body {
             namespace: "pusher",
             colour: PUSHER,
-            shape: &scene.pusher.shape,
+            shape: &scene.pusher.fingers[0],
             pose: pusher,
             touched: touched(row.contact_pusher),
         },
     ];
-    let contacts = row.contact_fixels.as_deref().unwrap_or_default();
+    let contacts = row.contact_others.as_deref().unwrap_or_default();
     bodies.extend(scene.fixels.iter().enumerate().map(|(k, fixel)| Body {
         namespace: "fixels",
         colour: FIXEL,

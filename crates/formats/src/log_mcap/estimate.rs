@@ -34,7 +34,8 @@ use crate::number;
 /// Equal estimates give equal bytes.
 ///
 /// # Errors
-/// A time that a stamp cannot hold, two rows within a nanosecond, or what `writer` says.
+/// A time that a stamp cannot hold, two rows within a nanosecond, a hand of several
+/// fingers, or what `writer` says.
 pub fn write_estimate_mcap(
     writer: impl Write + Seek,
     estimate: &Estimate,
@@ -42,6 +43,10 @@ pub fn write_estimate_mcap(
     pusher: &[Option<Pose>],
     setup: &Setup,
 ) -> Result<(), McapWriteError> {
+    match setup.scene.pusher.fingers.len() {
+        1 => {}
+        fingers => return Err(McapWriteError::Fingers(fingers - 1)),
+    }
     let has_particles = cloud.iter().any(|poses| !poses.is_empty());
     let mut messages = Messages::new(writer, has_particles, estimate.has_tripod)?;
     let stamps = stamps(&estimate.time)?;
@@ -165,7 +170,7 @@ impl<W: Write + Seek> Messages<W> {
 
     fn write_numbers(&mut self, stamp: i64, row: &EstimateRow) -> Result<(), McapWriteError> {
         let tripod = self.has_tripod;
-        let fixels = row.contact_fixels.as_deref().unwrap_or_default();
+        let fixels = row.contact_others.as_deref().unwrap_or_default();
         let belief = belief_columns::numbers(row, fixels.len()).into_iter();
         let names: Vec<_> = (1..=fixels.len())
             .map(|k| format!(",contact_{k}"))

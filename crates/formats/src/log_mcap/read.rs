@@ -144,6 +144,7 @@ pub fn read_bag<R: Read>(
         object_covariance: own_covariances(&rows, &covariances),
         object: rows.object,
         pusher: rows.pusher,
+        other_fingers: Vec::new(),
         tactile: rows.tactile,
         force,
     };

@@ -49,6 +49,11 @@ pub enum McapWriteError {
         "{0} is mapped to frames of transforms, and poses are written as PoseStamped. Map it to a topic"
     )]
     Frames(Topic),
+    /// A hand of several fingers.
+    #[error(
+        "a recording has the pose of one pusher, and there are {0} [[finger]] tables. Write CSV files"
+    )]
+    Fingers(usize),
     /// The writer failed.
     #[error("the recording cannot be written: {0}")]
     Output(#[source] Box<dyn std::error::Error + Send + Sync>),
@@ -110,6 +115,10 @@ impl<W: Write + Seek> LogMessages<W> {
     /// Begins a recording with a channel for each column that `log` has.
     pub(crate) fn new(writer: W, log: &Log, topics: &Topics) -> Result<Self, McapWriteError> {
         // plain: a log whose end is lost can then be read up to there by any tool
+        match log.other_fingers.len() {
+            0 => {}
+            fingers => return Err(McapWriteError::Fingers(fingers)),
+        }
         let mut recorder = Recorder::new(writer, None)?;
         let object = match log.object_covariance.is_empty() {
             true => recorder.channel::<PoseStamped>(topics, Topic::Object)?,

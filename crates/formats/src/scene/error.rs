@@ -128,6 +128,14 @@ pub enum SceneProblem {
         /// The tripod's key.
         key: &'static str,
     },
+    /// More fingers than a hand may have.
+    #[error(
+        "this is [[finger]] number {}; a hand has the pusher and at most {most} other fingers. Remove it", most + 1
+    )]
+    TooManyFingers {
+        /// Most of these tables.
+        most: usize,
+    },
     /// A missing value that cannot be worked out, since the object is no uniform plate.
     #[error(
         "`{key}` is missing, and the middle of the outline is at ({x:.4}, {y:.4}) m; it can be worked out only where that is the centre of mass, the origin of the object frame. Move the outline by ({dx:.4}, {dy:.4}), or give `{key}`", dx = -x, dy = -y

@@ -74,7 +74,7 @@ const PLAIN: Unit = Unit::None;
 
 /// Names of all tables with their keys; the first one is the document itself.
 #[rustfmt::skip]
-const TABLES: [(&str, &[Key]); 15] = [
+const TABLES: [(&str, &[Key]); 16] = [
     ("", &[
         number("gravity", MetrePerSecond2, Positive, Required,
             "the gravity that presses the object on the support"),
@@ -82,6 +82,9 @@ const TABLES: [(&str, &[Key]); 15] = [
             "the pushed object; its frame has its origin in the centre of mass"),
         of(Table, "support", Required, "the contact of object and table"),
         of(Table, "pusher", Required, "the pusher"),
+        of(Tables, "finger", Optional,
+            "each other finger of a hand, as a table [[finger]] with the key shape")
+            .note("Friction and stall_force are the pusher's."),
         of(Table, "fixels", Required, "the friction of all fixels"),
         of(Tables, "fixel", Optional,
             "each fixel, a fixed body, as a table [[fixel]] with the keys position, angle, shape")
@@ -126,6 +129,9 @@ const TABLES: [(&str, &[Key]); 15] = [
         number("stall_force", Newton, PositiveOrInfinite, Derived(TWENTY_FRICTIONS),
             "the force at which the drive yields").note("inf: it never yields."),
         of(Poses, "tags", Optional, TAGS),
+    ]),
+    ("finger", &[
+        of(Shape, "shape", Required, OUTLINE),
     ]),
     ("fixels", &[
         number("friction", PLAIN, NotNegative, Required,

@@ -19,7 +19,7 @@ mod uncertainty;
 use std::f64::consts::FRAC_PI_2;
 
 use stickslip::{ASSUMED_STALL, FilterSettings, Setup};
-use stickslip_dynamics::{Feet, Fixel, Friction, Object, Pose, Pusher, Scene};
+use stickslip_dynamics::{Feet, Fixel, Friction, MOST_FINGERS, Object, Pose, Pusher, Scene};
 use toml::de::DeTable;
 
 use crate::mounts::Mounts;
@@ -185,7 +185,7 @@ fn scene(root: &Table<'_>) -> Result<Scene> {
     let support = root.section("support")?;
     let (mu_s, (feet, d_tri)) = (support.number("friction")?, feet(&support, &body)?);
     let sliding = mu_s * object.mass * gravity;
-    let (mu_p, pusher) = pusher(&root.section("pusher")?, sliding)?;
+    let (mu_p, pusher) = pusher(root, sliding)?;
     let mu_f = root.section("fixels")?.number("friction")?;
     Ok(Scene {
         gravity,
@@ -229,10 +229,22 @@ fn plate(table: &Table<'_>, key: &'static str) -> Result<Plate> {
     Ok(plate)
 }
 
-/// The pusher with its friction; `sliding` is the force (N) that slides the object.
-fn pusher(table: &Table<'_>, sliding: f64) -> Result<(f64, Pusher)> {
+/// The pusher, with the other fingers of a hand, and its friction; `sliding` is the force (N) that
+/// slides the object.
+fn pusher(root: &Table<'_>, sliding: f64) -> Result<(f64, Pusher)> {
+    let table = &root.section("pusher")?;
+    let mut fingers = vec![shape(table)?];
+    if let Some(others) = root.optional("finger") {
+        for (k, other) in others.items()?.iter().enumerate() {
+            if k + 1 == MOST_FINGERS {
+                let most = MOST_FINGERS - 1;
+                return Err(other.error(SceneProblem::TooManyFingers { most }));
+            }
+            fingers.push(shape(&other.table()?)?);
+        }
+    }
     let pusher = Pusher {
-        shape: shape(table)?,
+        fingers,
         stall_force: stall_force(table, sliding)?,
     };
     Ok((table.number("friction")?, pusher))

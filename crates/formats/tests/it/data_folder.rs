@@ -3,7 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
-use stickslip_formats::{check_sensors, read_log, read_scene, read_truth_csv, read_truth_json};
+use stickslip_formats::{check_bodies, read_log, read_scene, read_truth_csv, read_truth_json};
 
 fn data_folder() -> Option<PathBuf> {
     let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
@@ -73,7 +73,7 @@ fn every_log_of_the_data_folder_reads_and_fits_its_scene() {
             .unwrap_or_else(|error| panic!("{error}"));
         assert_eq!(warnings, []);
         let setup = read_scene(&text(&path.with_file_name("scene.toml")), "scene.toml").unwrap();
-        check_sensors(&log, &setup).unwrap();
+        check_bodies(&log, &setup).unwrap();
         assert_eq!(log.len() + 1, text(&path).lines().count());
     }
 }

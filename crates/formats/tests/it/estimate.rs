@@ -25,7 +25,7 @@ fn full_row() -> EstimateRow {
             d_tri: 0.4,
         }),
         contact_pusher: Some(0.5),
-        contact_fixels: Some(vec![0.25, 0.75]),
+        contact_others: Some(vec![0.25, 0.75]),
         spread: Some(Spread {
             pose: Pose::new(7.0, 8.0, 9.0),
             cross: Some(CrossCovariance {
@@ -70,7 +70,7 @@ fn estimate(rows: Vec<EstimateRow>, has_tripod: bool) -> Estimate {
     Estimate {
         time: (0..rows.len()).map(|row| row as f64).collect(),
         rows,
-        fixels: 2,
+        others: 2,
         has_tripod,
     }
 }
@@ -133,7 +133,7 @@ fn estimate_without_fixels_has_no_contact_columns() {
     let none = Estimate {
         time: vec![0.0],
         rows: vec![EstimateRow::default()],
-        fixels: 0,
+        others: 0,
         has_tripod: true,
     };
     let text = written(&none);
@@ -271,7 +271,7 @@ prop_compose! {
         twist in prop::option::of(any_pose()),
         friction in any_friction(),
         contact_pusher in prop::option::of(number()),
-        contact_fixels in prop::option::of(prop::collection::vec(number(), 2)),
+        contact_others in prop::option::of(prop::collection::vec(number(), 2)),
         spread in prop::option::of((any_pose(), any_cross(), any_friction())),
         ess in prop::option::of(number()),
         (resampled, visual, unsolved, failed) in any::<(Option<bool>, bool, Option<u32>, Option<u32>)>(),
@@ -283,7 +283,7 @@ prop_compose! {
             twist: twist.map(|t| Twist { vx: t.x, vy: t.y, omega: t.theta }),
             friction,
             contact_pusher,
-            contact_fixels,
+            contact_others,
             spread: spread.map(|(pose, cross, friction)| Spread { pose, cross, friction }),
             ess,
             resampled,

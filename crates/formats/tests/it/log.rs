@@ -4,8 +4,8 @@
 use stickslip::Log;
 use stickslip_dynamics::Pose;
 use stickslip_formats::{
-    LogWarning, NamedColumns, SensorError, check_sensors, log_of_columns, read_log, read_scene,
-    write_log,
+    BodiesError, LogWarning, NamedColumns, check_bodies, log_of_columns, read_log,
+    read_scene, write_log,
 };
 
 const HEADER: &str = "time,object_x,object_y,object_theta,pusher_x,pusher_y,pusher_theta";
@@ -393,14 +393,16 @@ fn more_sensors_than_fixels_are_refused_and_fewer_are_not() {
         ..Log::default()
     };
     for sensors in 0..=2 {
-        assert_eq!(check_sensors(&with_sensors(sensors), &setup), Ok(()));
+        assert_eq!(check_bodies(&with_sensors(sensors), &setup), Ok(()));
     }
-    let error = check_sensors(&with_sensors(3), &setup).expect_err("one too many");
+    let error = check_bodies(&with_sensors(3), &setup).expect_err("one too many");
     assert_eq!(
         error,
-        SensorError {
+        BodiesError::Sensors {
             sensors: 3,
-            fixels: 2
+            fixels: 2,
+            fingers: 1,
+            most: 2
         }
     );
     for word in ["3 tactile sensors", "2 fixels", "tactile_3", "[[fixel]]"] {
@@ -415,6 +417,7 @@ fn write_log_writes_the_contract() {
         object: vec![Some(Pose::new(0.5, -0.25, 1e-9)), None],
         object_covariance: Vec::new(),
         pusher: vec![None, Some(Pose::new(1.0, 2.0, -0.0))],
+        other_fingers: Vec::new(),
         tactile: vec![vec![Some(true), None], vec![Some(false), Some(false)]],
         force: vec![None, Some([1.5, 0.0])],
     };

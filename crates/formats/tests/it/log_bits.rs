@@ -87,6 +87,7 @@ fn any_log() -> impl Strategy<Value = Log> {
                     Vec::new()
                 },
                 pusher,
+                other_fingers: Vec::new(),
                 tactile,
                 force,
             })

@@ -187,6 +187,7 @@ fn recorded() -> Log {
             .collect(),
         object_covariance: Vec::new(),
         pusher: (0..40).map(|k| pose(f64::from(k) - 3.0)).collect(),
+        other_fingers: Vec::new(),
         tactile: vec![
             (0..40).map(|k| Some(k > 20)).collect(),
             (0..40).map(|k| (k > 30).then_some(false)).collect(),

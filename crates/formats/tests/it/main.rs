@@ -12,6 +12,7 @@ mod bag_runs;
 mod data_folder;
 mod estimate;
 mod experiment;
+mod hand;
 mod key_table;
 mod large;
 mod log;

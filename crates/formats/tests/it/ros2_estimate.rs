@@ -26,7 +26,7 @@ fn one_pose(pose: Pose, std: Pose) -> (Setup, Estimate) {
     let seen = EstimateRow {
         pose: Some(pose),
         contact_pusher: Some(0.5),
-        contact_fixels: Some(vec![0.75; fixels]),
+        contact_others: Some(vec![0.75; fixels]),
         friction: Some(Friction {
             mu_s: 0.5,
             mu_p: 0.25,
@@ -56,7 +56,7 @@ fn one_pose(pose: Pose, std: Pose) -> (Setup, Estimate) {
     let estimate = Estimate {
         time: vec![1.0, 2.0],
         rows: vec![EstimateRow::default(), seen],
-        fixels,
+        others: fixels,
         has_tripod: true,
     };
     (setup, estimate)
@@ -137,7 +137,7 @@ fn others_read_an_estimate() {
 /// Parts of all bodies but the object.
 fn parts_of_others(setup: &Setup) -> usize {
     let fixels = setup.scene.fixels.iter().map(|fixel| &fixel.shape);
-    let shapes = fixels.chain([&setup.scene.pusher.shape]);
+    let shapes = fixels.chain([&setup.scene.pusher.fingers[0]]);
     shapes.map(|shape| shape.parts().len()).sum()
 }
 

@@ -70,7 +70,7 @@ fn full_scene_shapes_arrive() {
             centre: [0.01, 0.0],
         },
     ];
-    same_shape(&scene.pusher.shape, discs);
+    same_shape(&scene.pusher.fingers[0], discs);
     same_shape(
         &scene.fixels[0].shape,
         vec![Part::ellipse([0.03, 0.02], [0.0, 0.01], 0.125)],

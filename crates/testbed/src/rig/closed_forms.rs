@@ -38,7 +38,7 @@ fn scene(fixels: Vec<Fixel>) -> Scene {
         },
         feet: Feet::Tripod { angle: 0.0 },
         pusher: Pusher {
-            shape: Shape::new(vec![Part::Polygon { vertices: bar }]).expect("a bar"),
+            fingers: vec![Shape::new(vec![Part::Polygon { vertices: bar }]).expect("a bar")],
             stall_force: None,
         },
         fixels,

@@ -112,9 +112,9 @@ impl<'a> RigState<'a> {
     fn contact_wrench(&mut self, h: f64) -> Wrench {
         let scene = self.trial.scene;
         let object = Placed::new(&scene.object.shape, self.object);
-        let pusher = Placed::new(&scene.pusher.shape, self.pusher());
+        let pusher = Placed::new(&scene.pusher.fingers[0], self.pusher());
         let velocity = self.direction.map(|d| d * self.drive.speed);
-        let mut wrench = self.contact(Body::Pusher, (&object, &pusher), velocity, h);
+        let mut wrench = self.contact(Body::Finger(0), (&object, &pusher), velocity, h);
         for j in 0..self.fixels.len() {
             let fixel = self.fixels[j];
             wrench = sum(
@@ -174,7 +174,7 @@ impl<'a> RigState<'a> {
         for contact in &self.contacts {
             let [fx, fy] = contact.force;
             match contact.body {
-                Body::Pusher => {
+                Body::Finger(_) => {
                     along -= fx * self.direction[0] + fy * self.direction[1];
                     self.pusher_impulse[0] += h * fx;
                     self.pusher_impulse[1] += h * fy;

@@ -72,7 +72,7 @@ fn trace_tells_who_touches_when_and_with_what_force() {
     assert_eq!(trace.frames.len(), 181);
     // the pusher has 2 mm to go and lags by 30 ms; the first fixel comes in the reference's frame
     // 156
-    let first = trace.first_contact(Body::Pusher).expect("a push");
+    let first = trace.first_contact(Body::Finger(0)).expect("a push");
     assert!((3..=6).contains(&first), "{first}");
     let fixel = trace.first_contact(Body::Fixel(0)).expect("a touch");
     assert!((145..=170).contains(&fixel), "{fixel}");
@@ -87,7 +87,8 @@ fn trace_tells_who_touches_when_and_with_what_force() {
         panic!("one contact: {:?}", pushed.contacts)
     };
     assert!(
-        contact.body == Body::Pusher && (contact.point[0] - pushed.pusher.x - 0.005).abs() < 2e-3,
+        contact.body == Body::Finger(0)
+            && (contact.point[0] - pushed.pusher.x - 0.005).abs() < 2e-3,
         "{contact:?}"
     );
 }
@@ -267,7 +268,7 @@ fn model_follows_the_reference_at_the_frame_s_step() {
     // the first step
     assert_eq!(
         (
-            trace.first_contact(Body::Pusher),
+            trace.first_contact(Body::Finger(0)),
             trace.first_contact(Body::Fixel(2))
         ),
         (Some(4), Some(84))

@@ -31,12 +31,8 @@ fn compliance_of(problem: &StepProblem, solution: &StepSolution) -> Option<f64> 
         .filter(|(_, p_n)| **p_n > 0.0)?;
     let Twist { vx, vy, omega } = solution.twist;
     let [x, y] = contact.arm;
-    let give = problem
-        .stall
-        .filter(|_| contact.on_pusher)
-        .map_or([0.0; 2], |stall| {
-            stall.direction.map(|d| d * solution.pusher_yield)
-        });
+    let yields = contact.yields.filter(|_| problem.stall.is_some());
+    let give = yields.map_or([0.0; 2], |yields| yields.map(|d| d * solution.pusher_yield));
     let relative = [
         vx - omega * y - contact.surface_velocity[0] + give[0],
         vy + omega * x - contact.surface_velocity[1] + give[1],

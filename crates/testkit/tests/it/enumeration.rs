@@ -1,7 +1,7 @@
 //! Oracles against each other: mode enumeration, cone program, witnesses and the two statements on
 //! existence.
 
-use stickslip_dynamics::{ContactPoint, Stall, StepProblem, StepSolution, Twist, Wrench};
+use stickslip_dynamics::{ContactPoint, StepProblem, StepSolution, Twist, Wrench};
 use stickslip_testkit::{
     Block, Corpus, Family, cone_program_step, cone_program_twist, enumerate_modes, gap_margin,
     impulses_for_twist, may_jam, residual_si,
@@ -57,7 +57,7 @@ fn between_fixels(heights: [f64; 2], mu: f64, gap: f64) -> StepProblem {
         gap,
         mu,
         surface_velocity: [0.0; 2],
-        on_pusher: false,
+        yields: None,
     };
     problem.contacts = vec![fixel(1.0, heights[0]), fixel(-1.0, heights[1])];
     problem
@@ -229,11 +229,8 @@ fn may_jam_knows_a_drive_that_is_dragged_along() {
             .iter()
             .position(|contact| contact.normal[0] > 0.0)
             .expect("a contact from the left");
-        problem.contacts[pushes_right].on_pusher = true;
-        problem.stall = Some(Stall {
-            impulse: 0.1,
-            direction,
-        });
+        problem.contacts[pushes_right].yields = Some(direction);
+        problem.stall = Some(0.1);
         problem
     };
     assert!(!may_jam(&driven([1.0, 0.0], 0.0)));

@@ -1,7 +1,7 @@
 //! The steps that a solver once failed on or took long for, from where it started and from afar:
 //! each is solved or proven to have no solution, and the two agree.
 
-use stickslip_dynamics::{Outcome, Route, Stall, StepProblem, solve, solve_from};
+use stickslip_dynamics::{Outcome, Route, solve, solve_from};
 use stickslip_testkit::{gap_margin, hard_steps, is_solvable, is_sought, may_jam, residual_si};
 
 /// Largest residual of a solved step (m/s).
@@ -69,13 +69,11 @@ fn drives_that_no_jam_makes_yield_count_as_rigid() {
         .filter(|step| step.problem.stall.is_none());
     let mut infeasible = 0;
     for step in rigid {
-        let strong = StepProblem {
-            stall: Some(Stall {
-                impulse: 1e8,
-                direction: [1.0, 0.0],
-            }),
-            ..step.problem.clone()
-        };
+        let mut strong = step.problem.clone();
+        strong.stall = Some(1e8);
+        for yields in strong.contacts.iter_mut().flat_map(|c| &mut c.yields) {
+            *yields = [1.0, 0.0];
+        }
         let (outcome, expected) = (solve(&strong).1.outcome, solve(&step.problem).1.outcome);
         assert_eq!(outcome, expected, "{strong:?}");
         infeasible += u32::from(outcome == Outcome::Infeasible);

@@ -1,6 +1,6 @@
 //! The residual on steps solved by hand: zero there, and every row and every unknown can spoil it.
 
-use stickslip_dynamics::{ContactPoint, Stall, StepProblem, StepSolution, Twist, Wrench};
+use stickslip_dynamics::{ContactPoint, StepProblem, StepSolution, Twist, Wrench};
 use stickslip_testkit::{Block, ResidualRow, residual_rows_si, residual_si};
 
 const BLOCK: Block = Block {
@@ -20,7 +20,7 @@ fn push(mu: f64) -> ContactPoint {
         gap: 0.0,
         mu,
         surface_velocity: [SPEED, 0.0],
-        on_pusher: true,
+        yields: Some([1.0, 0.0]),
     }
 }
 
@@ -30,11 +30,8 @@ fn pushed(mu: f64, stall_share: Option<f64>) -> (StepProblem, StepSolution) {
     let mut problem = BLOCK.problem(Twist::default(), Wrench::default());
     problem.contacts = vec![push(mu)];
     let needed = BLOCK.mass * SPEED + BLOCK.bound();
-    let stall = stall_share.map(|share| Stall {
-        impulse: share * needed,
-        direction: [1.0, 0.0],
-    });
-    let force = stall.map_or(needed, |s| s.impulse.min(needed));
+    let stall = stall_share.map(|share| share * needed);
+    let force = stall.map_or(needed, |impulse| impulse.min(needed));
     let vx = (force - BLOCK.bound()) / BLOCK.mass;
     let solution = StepSolution {
         twist: Twist {

@@ -1,6 +1,6 @@
 //! Scenes and small tools that the tests of the dynamics share.
 use stickslip_dynamics::{
-    Dynamics, Feet, Fixel, Friction, Lanes, Object, Part, Particle, Pose, Pusher, PusherMotion,
+    Dynamics, Feet, FingerMotion, Fixel, Friction, Lanes, Object, Part, Particle, Pose, Pusher,
     Report, Scene, Shape, StepInput, StepProblem, StepSolution, StepWork, Twist, Unknowns,
 };
 
@@ -91,7 +91,7 @@ pub fn square_scene(fixels: Vec<Fixel>) -> Scene {
             angle: std::f64::consts::FRAC_PI_2,
         },
         pusher: Pusher {
-            shape: disc(0.005),
+            fingers: vec![disc(0.005)],
             stall_force: None,
         },
         fixels,
@@ -113,11 +113,14 @@ pub fn pushing(h: f64, x: f64, y: f64, speed: f64) -> StepInput {
     };
     StepInput {
         h,
-        pusher: Some(PusherMotion {
-            pose: Pose::new(x, y, 0.0),
-            twist,
-            direction: [1.0, 0.0],
-        }),
+        pusher: Some(
+            FingerMotion {
+                pose: Pose::new(x, y, 0.0),
+                twist,
+                direction: [1.0, 0.0],
+            }
+            .into(),
+        ),
     }
 }
 

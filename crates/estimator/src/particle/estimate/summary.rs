@@ -67,9 +67,9 @@ pub(crate) fn summarise(
     row.friction = Some(means.friction);
     row.spread = Some(spread);
     row.contact_pusher = Some(sums.contact_pusher);
-    row.contact_fixels
+    row.contact_others
         .get_or_insert_default()
-        .clone_from(&sums.contact_fixels);
+        .clone_from(&sums.contact_others);
     row.slip.get_or_insert_default().clone_from(&sums.slips);
     row.unsolved = Some(sums.unsolved as u32);
     row.failed = Some(sums.failed as u32);

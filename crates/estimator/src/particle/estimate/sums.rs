@@ -150,9 +150,10 @@ pub struct Sums {
     pub failed: f64,
     /// Σ w c_p.
     pub contact_pusher: f64,
-    /// Σ w c_j of every fixel.
-    pub contact_fixels: Vec<f64>,
-    /// Slip of the object, Σ w of the particles that do so: on the pusher, then on every fixel.
+    /// Σ w c_j of every fixel, then of every other finger.
+    pub contact_others: Vec<f64>,
+    /// Slip of the object, Σ w of the particles that do so: on the pusher, then on every fixel
+    /// and other finger.
     pub slips: Vec<ContactSlip>,
 }
 
@@ -226,16 +227,16 @@ impl Sums {
         self.unsolved = total(unsolved);
         self.failed = total(failed);
         self.contact_pusher = share(block, weights, Columns::CONTACT_PUSHER);
-        self.contact_fixels.clear();
+        self.contact_others.clear();
         self.slips.clear();
         let how = (Columns::CONTACT_PUSHER, Columns::SLIP_PUSHER);
         self.slips
             .push(slips(block, weights, self.contact_pusher, how));
-        for j in 0..columns.fixels() {
-            let contact = columns.contact_fixel(j);
+        for j in 0..columns.others() {
+            let contact = columns.contact_other(j);
             let touch = share(block, weights, contact);
-            self.contact_fixels.push(touch);
-            let how = (contact, columns.slip_fixel(j));
+            self.contact_others.push(touch);
+            let how = (contact, columns.slip_other(j));
             self.slips.push(slips(block, weights, touch, how));
         }
     }
@@ -280,12 +281,12 @@ fn slips(
 
 impl WeightedSums for Sums {
     fn clear(&mut self) {
-        let mut contact_fixels = std::mem::take(&mut self.contact_fixels);
+        let mut contact_others = std::mem::take(&mut self.contact_others);
         let mut slips = std::mem::take(&mut self.slips);
-        contact_fixels.clear();
+        contact_others.clear();
         slips.clear();
         *self = Self {
-            contact_fixels,
+            contact_others,
             slips,
             ..Self::default()
         };
@@ -312,10 +313,10 @@ impl WeightedSums for Sums {
         let cross = self.cross.iter_mut().zip(&other.cross);
         cross.for_each(|(to, from)| add(to, from));
         add(&mut self.contact_pusher, &other.contact_pusher);
-        let fixels = other.contact_fixels.len();
-        self.contact_fixels.resize(fixels, 0.0);
-        let fixels = self.contact_fixels.iter_mut().zip(&other.contact_fixels);
-        fixels.for_each(|(to, from)| add(to, from));
+        let others = other.contact_others.len();
+        self.contact_others.resize(others, 0.0);
+        let others = self.contact_others.iter_mut().zip(&other.contact_others);
+        others.for_each(|(to, from)| add(to, from));
         self.slips.resize(other.slips.len(), ContactSlip::default());
         for (to, from) in self.slips.iter_mut().zip(&other.slips) {
             add(&mut to.stick, &from.stick);

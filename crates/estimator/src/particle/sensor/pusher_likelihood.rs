@@ -1,7 +1,7 @@
 //! The pusher as a sensor (docs/model.md (40)): where it goes on, the object did not jam it; where
 //! it stops, the object probably did.
 
-use stickslip_dynamics::{Lanes, PusherMotion, StepInput, Twist};
+use stickslip_dynamics::{FingerMotion, Lanes, PusherMotion, StepInput, Twist};
 use stickslip_filter::BlockMut;
 
 use crate::particle::set::chunk::{Column, LANES, add_chunk, squared};
@@ -13,27 +13,28 @@ use crate::tuning::COMMANDED;
 /// Motion of the pusher since it stood last.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Push {
-    /// Latest twist in which it was about as fast as ever in this push.
-    twist: Twist,
+    /// Latest motion in which it was about as fast as ever in this push.
+    motion: Option<PusherMotion>,
     /// Way that it has gone (m).
     way: f64,
 }
 
 impl Push {
     /// Takes a step of `h` seconds. If the pusher stops after a way of `least` (m) or more, it
-    /// returns the twist with which it would have gone on. A shorter way may be noise of its poses.
+    /// returns the motion in which it would have gone on. A shorter way may be noise of its poses.
     /// A causal track shows a stop too late, and tells it from noise too badly.
-    pub fn stops(&mut self, drive: &Drive<'_>, h: f64, least: f64) -> Option<Twist> {
-        let twist = drive.substeps.last()?.pusher?.twist;
+    pub fn stops(&mut self, drive: &Drive<'_>, h: f64, least: f64) -> Option<PusherMotion> {
+        let motion = drive.substeps.last()?.pusher?;
+        let speed = fastest(&motion);
         if drive.moves {
-            if speed(&twist) > 0.5 * speed(&self.twist) {
-                self.twist = twist;
+            if speed > 0.5 * self.motion.as_ref().map_or(0.0, fastest) {
+                self.motion = Some(motion);
             }
-            self.way += speed(&twist) * h;
+            self.way += speed * h;
             return None;
         }
-        let Self { twist, way } = std::mem::take(self);
-        (way >= least && drive.smoothed).then_some(twist)
+        let Self { motion, way } = std::mem::take(self);
+        motion.filter(|_| way >= least && drive.smoothed)
     }
 }
 
@@ -56,7 +57,7 @@ impl Propagation {
             let roughness = roughness(columns, block, chunk);
             let std = setup.uncertainty.well_measured_at(roughness) * lag;
             let scale = Lanes::splat(-0.5 * counts) / (std * std);
-            let after = squared(self.particles[chunk].pusher_lag);
+            let after = squared(self.particles[chunk].pusher_lag[0]);
             let mut log_likelihood = (after - *before) * scale;
             if let Some(further) = &further {
                 let goes_on = ((further[chunk] - after).max(Lanes::ZERO) * scale).exp();
@@ -76,28 +77,39 @@ impl Propagation {
         plan: &StepPlan,
         chunks: usize,
     ) -> Option<[Column; CHUNKS]> {
-        let twist = plan.stopped?;
+        let stopped = plan.stopped?;
         let last = plan.substeps.last()?;
         let stands = last.pusher?;
-        let speed = speed(&twist);
-        let on = PusherMotion {
-            pose: stands.pose.advance(stands.twist, last.h),
-            twist,
-            direction: [twist.vx / speed, twist.vy / speed],
-        };
+        let fingers = stands.iter().zip(stopped.iter()).map(|(stands, stopped)| {
+            let (twist, speed) = (stopped.twist, speed(&stopped.twist));
+            Some(FingerMotion {
+                pose: stands.pose.advance(stands.twist, last.h),
+                twist,
+                direction: match speed > 0.0 {
+                    true => [twist.vx / speed, twist.vy / speed],
+                    false => stopped.direction,
+                },
+            })
+        });
         let input = StepInput {
-            h: transition.setup.uncertainty.pusher_lag / speed,
-            pusher: Some(on),
+            h: transition.setup.uncertainty.pusher_lag / fastest(&stopped),
+            pusher: PusherMotion::new(fingers),
         };
         let kept = self.particles;
         self.step_with_offsets(transition, &input, chunks);
-        let lags = self.particles.each_ref().map(|p| squared(p.pusher_lag));
+        let lags = self.particles.each_ref().map(|p| squared(p.pusher_lag[0]));
         self.particles = kept;
         Some(lags)
     }
 }
 
-/// Speed of a pusher (m/s).
+/// Speed of the pusher's fastest finger (m/s).
+pub(crate) fn fastest(pusher: &PusherMotion) -> f64 {
+    let speeds = pusher.iter().map(|finger| speed(&finger.twist));
+    speeds.fold(0.0, f64::max)
+}
+
+/// Speed of a finger (m/s).
 pub(crate) fn speed(twist: &Twist) -> f64 {
     libm::hypot(twist.vx, twist.vy)
 }

@@ -40,7 +40,7 @@ impl TactileLikelihood {
             if let Some(reading) = reading {
                 let reading = usize::from(*reading);
                 let (free, touching) = (self.free[reading], self.touching[reading]);
-                let touches = flag(block, self.columns.contact_fixel(j), chunk);
+                let touches = flag(block, self.columns.contact_of_sensor(j), chunk);
                 sum += touches.select(Lanes::splat(touching), Lanes::splat(free));
             }
         }

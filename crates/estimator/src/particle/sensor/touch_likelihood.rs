@@ -1,6 +1,6 @@
 //! Likelihood of the tactile readings in the robust model (docs/model.md (38) and (39)).
 
-use stickslip_dynamics::{Body, Lanes, on_widest};
+use stickslip_dynamics::{Lanes, on_widest};
 use stickslip_filter::BlockMut;
 
 use crate::particle::sensor::touch_channel::{TouchChannel, touch_probability};
@@ -49,7 +49,8 @@ impl Propagation {
         let last_h = plan.substeps.last().map_or(0.0, |step| step.h);
         let threshold = Lanes::splat(setup.tactile.touch_force * last_h);
         let touch_gap = Lanes::splat(setup.uncertainty.touch_gap);
-        for j in 0..columns.fixels() {
+        for j in 0..columns.sensors() {
+            let body = setup.scene.sensed(j);
             // a row without readings of a sensor is silent on it
             let reading = plan.tactile.get(j).copied().flatten();
             let most = reading.map_or(0.0, |reading| libm::log(channel.most_likely(reading)));
@@ -63,10 +64,10 @@ impl Propagation {
                 };
                 // impulses of a standing rig are not unique
                 let impulse = match plan.driven {
-                    true => self.work.normal_impulses(chunk, Body::Fixel(j)) / threshold,
+                    true => self.work.normal_impulses(chunk, body) / threshold,
                     false => Lanes::ZERO,
                 };
-                let gap = self.work.gaps(chunk, Body::Fixel(j)) / touch_gap;
+                let gap = self.work.gaps(chunk, body) / touch_gap;
                 let (after, log_likelihood) =
                     channel.read(belief, touch_probability(impulse, gap), reading);
                 let log_likelihood = log_likelihood - Lanes::splat(most);

@@ -11,17 +11,17 @@ const WARM: usize = stickslip_dynamics::WarmStart::LEN;
 /// Flags in a column: the bits of a mantissa, so that a column of flags is never NaN.
 const BITS: usize = 52;
 
-/// Flags that do not belong to a fixel.
+/// Flags that do not belong to a fixel or to another finger than the first.
 const SINGLE: usize = 10;
 
-/// Flags of each fixel.
-const FLAGS_PER_FIXEL: usize = 4;
+/// Flags of each fixel and of each other finger.
+const FLAGS_PER_OTHER: usize = 4;
 
 /// Columns of the robust model that are no unknowns of [`UNKNOWNS`]: the log-likelihood and the
 /// camera's noise.
 const OTHERS: usize = 4;
 
-/// Columns of a fixel's offset.
+/// Columns of the offset of a fixel or of another finger.
 const OFFSET_LEN: usize = 2;
 
 /// A condition of every particle: one bit of a column that holds only such bits.
@@ -43,12 +43,13 @@ pub struct SlipFlags {
     pub left: Flag,
 }
 
-/// Layout of a particle: pose, twist, friction, the pusher's lag, warm start, flags, the other
-/// unknowns of the robust model, past poses.
+/// Layout of a particle: pose, twist, friction, the first finger's lag, warm start, flags, the
+/// other fingers' lags, the other unknowns of the robust model, past poses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Columns {
     model: FilterModel,
     fixels: usize,
+    fingers: usize,
     history: usize,
     force: bool,
 }
@@ -60,23 +61,23 @@ impl Columns {
     pub const TWIST: usize = 3;
     /// μ_s, μ_p, μ_f, d_tri.
     pub const FRICTION: usize = 6;
-    /// Vector from where the pusher stands to its pose: x, y (m).
-    pub const PUSHER_LAG: usize = 10;
+    /// Vector from where the first finger stands to its pose: x, y (m).
+    const PUSHER_LAG: usize = 10;
     /// First column of the warm start.
     pub const WARM_START: usize = 12;
     /// First column of the flags.
     const FLAGS: usize = Self::WARM_START + WARM;
-    /// True if the pusher touches.
+    /// True if the pusher, or the first finger of a hand, touches.
     pub const CONTACT_PUSHER: Flag = Self::flag(0);
     /// True if the last step of a particle had no certified solution.
     pub const UNSOLVED: Flag = Self::flag(1);
     /// True if that step had neither a solution nor a proof that there is none.
     pub const FAILED: Flag = Self::flag(2);
 
-    /// True if the pusher ever was so near that contacts with it were sought (robust model).
+    /// True if it ever was so near that contacts with it were sought (robust model).
     pub const PUSHER_WAS_NEAR: Flag = Self::flag(7);
 
-    /// Slip of the object on the pusher.
+    /// Slip of the object on it.
     pub const SLIP_PUSHER: SlipFlags = SlipFlags {
         stick: Self::flag(8),
         left: Self::flag(9),
@@ -87,9 +88,15 @@ impl Columns {
         Self {
             model,
             fixels,
+            fingers: 1,
             history,
             force: false,
         }
+    }
+
+    /// The layout for a pusher of so many fingers, at least 1.
+    pub fn with_fingers(self, fingers: usize) -> Self {
+        Self { fingers, ..self }
     }
 
     /// The layout with `history` past poses.
@@ -112,6 +119,26 @@ impl Columns {
         self.fixels
     }
 
+    /// Number of the pusher's fingers.
+    pub fn fingers(&self) -> usize {
+        self.fingers
+    }
+
+    /// Number of bodies besides the object and the first finger: the fixels, then the other
+    /// fingers.
+    pub fn others(&self) -> usize {
+        self.fixels + self.fingers - 1
+    }
+
+    /// Number of bodies that may have a tactile sensor: the fixels, then the fingers of a hand of
+    /// several.
+    pub fn sensors(&self) -> usize {
+        match self.fingers {
+            1 => self.fixels,
+            fingers => self.fixels + fingers,
+        }
+    }
+
     const fn flag(number: usize) -> Flag {
         Flag {
             column: Self::FLAGS + number / BITS,
@@ -124,28 +151,51 @@ impl Columns {
         Self::flag(3 + k)
     }
 
-    /// c_j: true if fixel j touches.
-    pub fn contact_fixel(&self, fixel: usize) -> Flag {
-        Self::flag(SINGLE + fixel)
+    /// c_j: true if fixel or other finger j touches.
+    pub fn contact_other(&self, other: usize) -> Flag {
+        Self::flag(SINGLE + other)
     }
 
-    /// Slip of the object on fixel j.
-    pub fn slip_fixel(&self, fixel: usize) -> SlipFlags {
-        let first = SINGLE + 2 * self.fixels + 2 * fixel;
+    /// True if the body of sensor k touches.
+    pub fn contact_of_sensor(&self, sensor: usize) -> Flag {
+        match sensor.checked_sub(self.fixels) {
+            None => self.contact_other(sensor),
+            Some(0) => Self::CONTACT_PUSHER,
+            Some(finger) => self.contact_other(self.fixels + finger - 1),
+        }
+    }
+
+    /// Slip of the object on fixel or other finger j.
+    pub fn slip_other(&self, other: usize) -> SlipFlags {
+        let first = SINGLE + 2 * self.others() + 2 * other;
         SlipFlags {
             stick: Self::flag(first),
             left: Self::flag(first + 1),
         }
     }
 
-    /// True if fixel j ever was so near that contacts with it were sought (robust model).
-    pub fn fixel_was_near(&self, fixel: usize) -> Flag {
-        Self::flag(SINGLE + self.fixels + fixel)
+    /// True if fixel or other finger j ever was so near that contacts with it were sought (robust
+    /// model).
+    pub fn other_was_near(&self, other: usize) -> Flag {
+        Self::flag(SINGLE + self.others() + other)
+    }
+
+    /// Vector from where a finger stands to its pose: first of two columns, x and y (m).
+    pub fn lag(&self, finger: usize) -> usize {
+        match finger {
+            0 => Self::PUSHER_LAG,
+            _ => self.after_flags() + 2 * (finger - 1),
+        }
     }
 
     /// First column after the flags.
+    fn after_flags(&self) -> usize {
+        Self::FLAGS + (SINGLE + FLAGS_PER_OTHER * self.others()).div_ceil(BITS)
+    }
+
+    /// First column after the other fingers' lags.
     fn unknowns(&self) -> usize {
-        Self::FLAGS + (SINGLE + FLAGS_PER_FIXEL * self.fixels).div_ceil(BITS)
+        self.after_flags() + 2 * (self.fingers - 1)
     }
 
     /// log-likelihood of the pusher's place and the tactile readings of the latest row, without the
@@ -164,11 +214,11 @@ impl Columns {
         self.unknowns() + OTHERS
     }
 
-    /// Belief about sensor `fixel`, the numbers of a
+    /// Belief about a sensor, the numbers of a
     /// [`SensorBelief`](super::touch_channel::SensorBelief) (robust model).
-    pub fn sensor(&self, fixel: usize) -> usize {
+    pub fn sensor(&self, sensor: usize) -> usize {
         let force = if self.force { ForceBias::LEN } else { 0 };
-        self.force_bias() + force + BELIEF_LEN * fixel
+        self.force_bias() + force + BELIEF_LEN * sensor
     }
 
     /// Returns true if the layout has an unknown: only a force sensor needs its scale.
@@ -176,19 +226,20 @@ impl Columns {
         self.force || name != Name::ForceScale
     }
 
-    /// First column of an unknown; of one that every fixel has, that of `fixel` (robust model).
-    pub(crate) fn unknown(&self, name: Name, fixel: usize) -> usize {
+    /// First column of an unknown; of one that every fixel and other finger has, that of
+    /// `other` (robust model).
+    pub(crate) fn unknown(&self, name: Name, other: usize) -> usize {
         let before = UNKNOWNS.iter().take_while(|unknown| unknown.name != name);
         let before = before.filter(|unknown| self.has(unknown.name));
         let before: usize = before.map(|unknown| unknown.numbers).sum();
-        self.sensor(self.fixels) + before + OFFSET_LEN * fixel
+        self.sensor(self.sensors()) + before + OFFSET_LEN * other
     }
 
     /// x of the past pose in ring slot `slot`; y and θ follow.
     pub fn past_pose(&self, slot: usize) -> usize {
         let first = match self.model {
-            // behind the last fixel's offset
-            FilterModel::Robust => self.unknown(Name::FixelOffset, self.fixels),
+            // behind the last offset
+            FilterModel::Robust => self.unknown(Name::OtherOffset, self.others()),
             FilterModel::Paper => self.unknowns(),
         };
         first + 3 * slot
@@ -222,13 +273,13 @@ mod tests {
             Columns::FAILED,
             Columns::PUSHER_WAS_NEAR,
         ];
-        let of_fixels = (0..FIXELS).flat_map(|j| {
-            let flags = [columns.contact_fixel(j), columns.fixel_was_near(j)];
-            flags.into_iter().chain(of_slip(columns.slip_fixel(j)))
+        let of_others = (0..columns.others()).flat_map(|j| {
+            let flags = [columns.contact_other(j), columns.other_was_near(j)];
+            flags.into_iter().chain(of_slip(columns.slip_other(j)))
         });
         let identified = (0..4).map(Columns::identified);
         let single = single.into_iter().chain(of_slip(Columns::SLIP_PUSHER));
-        single.chain(identified).chain(of_fixels).collect()
+        single.chain(identified).chain(of_others).collect()
     }
 
     /// First column and length of all that holds numbers.
@@ -242,7 +293,8 @@ mod tests {
             (columns.step_log_likelihood(), 1),
             (columns.camera_noise(), 3),
         ];
-        numbers.extend((0..FIXELS).map(|j| (columns.sensor(j), BELIEF_LEN)));
+        numbers.extend((1..columns.fingers()).map(|i| (columns.lag(i), 2)));
+        numbers.extend((0..columns.sensors()).map(|j| (columns.sensor(j), BELIEF_LEN)));
         numbers.extend(table::numbers(*columns).map(|number| (number.column, 1)));
         numbers.extend((0..columns.history()).map(|slot| (columns.past_pose(slot), 3)));
         numbers
@@ -250,18 +302,20 @@ mod tests {
 
     #[test]
     fn everything_has_a_place_of_its_own_and_every_column_is_used() {
-        let columns = Columns::new(FilterModel::Robust, FIXELS, 3);
-        let flags = flags(&columns);
-        let places: HashSet<Flag> = flags.iter().copied().collect();
-        assert_eq!(flags.len(), SINGLE + FLAGS_PER_FIXEL * FIXELS);
-        assert_eq!(places.len(), flags.len());
-        assert!(flags.iter().all(|flag| flag.bit < 52));
+        for fingers in [1, 3] {
+            let columns = Columns::new(FilterModel::Robust, FIXELS, 3).with_fingers(fingers);
+            let flags = flags(&columns);
+            let places: HashSet<Flag> = flags.iter().copied().collect();
+            assert_eq!(flags.len(), SINGLE + FLAGS_PER_OTHER * columns.others());
+            assert_eq!(places.len(), flags.len());
+            assert!(flags.iter().all(|flag| flag.bit < 52));
 
-        let of_flags: HashSet<usize> = flags.iter().map(|flag| flag.column).collect();
-        let numbers = numbers(&columns).into_iter();
-        let of_numbers = numbers.flat_map(|(first, length)| first..first + length);
-        let mut used: Vec<usize> = of_numbers.chain(of_flags).collect();
-        used.sort_unstable();
-        assert_eq!(used, (0..columns.count()).collect::<Vec<_>>());
+            let of_flags: HashSet<usize> = flags.iter().map(|flag| flag.column).collect();
+            let numbers = numbers(&columns).into_iter();
+            let of_numbers = numbers.flat_map(|(first, length)| first..first + length);
+            let mut used: Vec<usize> = of_numbers.chain(of_flags).collect();
+            used.sort_unstable();
+            assert_eq!(used, (0..columns.count()).collect::<Vec<_>>());
+        }
     }
 }

@@ -102,13 +102,13 @@ impl<'a> ParticleView<'a> {
         self.driven
     }
 
-    /// Returns true if the object touches fixel `fixel` according to one particle.
+    /// Returns true if the object touches the body of a sensor according to one particle.
     ///
     /// # Panics
     /// If there is no such particle.
-    pub(crate) fn touches_fixel(&self, particle: usize, fixel: usize) -> bool {
+    pub(crate) fn touches_sensor(&self, particle: usize, sensor: usize) -> bool {
         let block = self.particles.block(particle / BLOCK);
-        let flag = self.model.columns().contact_fixel(fixel);
+        let flag = self.model.columns().contact_of_sensor(sensor);
         is_set(&block, flag, particle % BLOCK)
     }
 

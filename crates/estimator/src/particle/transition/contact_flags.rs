@@ -37,7 +37,7 @@ impl Propagation {
         };
 
         // the pusher; a hidden one that carries the object along touches it, too
-        let pusher = Body::Pusher;
+        let pusher = Body::Finger(0);
         let carried = moving(&self.carried[chunk], rho);
         let (near, touches) = near_and_touching(pusher);
         let goes_on = rests & near & flags.get(Columns::CONTACT_PUSHER);
@@ -53,17 +53,17 @@ impl Propagation {
         let was_near = pusher_was_near | near | carried;
         flags.set(Columns::PUSHER_WAS_NEAR, was_near);
 
-        // the fixels
-        for j in 0..setup.scene.fixels.len() {
-            let body = Body::Fixel(j);
+        // the fixels, and the other fingers
+        for j in 0..columns.others() {
+            let body = setup.scene.other(j);
             let (near, touches) = near_and_touching(body);
-            let goes_on = rests & near & flags.get(columns.contact_fixel(j));
+            let goes_on = rests & near & flags.get(columns.contact_other(j));
             let touched = touches | goes_on;
-            flags.set(columns.contact_fixel(j), touched);
+            flags.set(columns.contact_other(j), touched);
             let slip = self.work.slips(chunk, body);
-            store_slip(flags, columns.slip_fixel(j), touched, (slip, slides_from));
-            let before = flags.get(columns.fixel_was_near(j));
-            flags.set(columns.fixel_was_near(j), before | near);
+            store_slip(flags, columns.slip_other(j), touched, (slip, slides_from));
+            let before = flags.get(columns.other_was_near(j));
+            flags.set(columns.other_was_near(j), before | near);
         }
     }
 }

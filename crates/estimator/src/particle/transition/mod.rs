@@ -1,6 +1,7 @@
 //! How a particle moves over one step.
 
 pub(crate) mod contact_flags;
+mod lags;
 pub(crate) mod noise_clock;
 pub(crate) mod propagation;
 pub(crate) mod step_plan;

@@ -47,7 +47,7 @@ pub struct Propagation {
     pub(crate) particles: [Particles<LANES>; CHUNKS],
     /// Friction drawn for the step.
     pub(crate) proposed: [Friction<Column>; CHUNKS],
-    /// Offsets of each particle's pusher and fixels from their poses (robust model).
+    /// Offsets of each particle's fingers and fixels from their poses (robust model).
     pub(crate) pusher_offsets: Vec<[Column; 2]>,
     /// Turn of the pusher; empty if it is known (robust model).
     pub(crate) pusher_turn: Vec<Column>,
@@ -204,6 +204,7 @@ impl Propagation {
         let std = settings.parameter_std * (h / NOISE_STEP).sqrt();
         let limits = settings.limits.fields();
         for chunk in 0..block.len().div_ceil(LANES) {
+            self.load_lags(&transition.columns, block, chunk);
             let particles = &mut self.particles[chunk];
             load_columns(block, Columns::POSE, chunk, particles.pose.fields_mut());
             load_columns(block, Columns::TWIST, chunk, particles.twist.fields_mut());
@@ -212,12 +213,6 @@ impl Propagation {
                 Columns::FRICTION,
                 chunk,
                 particles.friction.fields_mut(),
-            );
-            load_columns(
-                block,
-                Columns::PUSHER_LAG,
-                chunk,
-                particles.pusher_lag.each_mut(),
             );
             // a standing pusher goes on through no jam: what it yielded may be the bodies' compliance
             if paper || !plan.rests_unseen() {
@@ -337,7 +332,9 @@ impl Propagation {
         for chunk in 0..chunks {
             let involved = &mut self.involved[chunk];
             involved.moved = involved.moved | moving(&self.particles[chunk].twist, rho);
-            involved.pusher = involved.pusher | pressed(&self.work, chunk, Body::Pusher);
+            for i in 0..scene.pusher.fingers.len() {
+                involved.pusher = involved.pusher | pressed(&self.work, chunk, Body::Finger(i));
+            }
             for j in 0..scene.fixels.len() {
                 involved.fixel = involved.fixel | pressed(&self.work, chunk, Body::Fixel(j));
             }
@@ -357,6 +354,7 @@ impl Propagation {
     #[inline(always)]
     fn store(&mut self, transition: &Transition<'_>, plan: &StepPlan, block: &mut BlockMut<'_>) {
         for chunk in 0..block.len().div_ceil(LANES) {
+            self.store_lags(&transition.columns, block, chunk);
             let (particles, involved) = (&self.particles[chunk], &self.involved[chunk]);
             store_columns(block, Columns::POSE, chunk, particles.pose.fields());
             let mut twist = particles.twist;
@@ -371,8 +369,6 @@ impl Propagation {
                 *twist += *carried;
             }
             store_columns(block, Columns::TWIST, chunk, twist.fields());
-            let lag = particles.pusher_lag.each_ref();
-            store_columns(block, Columns::PUSHER_LAG, chunk, lag);
             store_columns(block, Columns::WARM_START, chunk, particles.warm.fields());
             let mut friction = Friction::default();
             load_columns(block, Columns::FRICTION, chunk, friction.fields_mut());

@@ -1,6 +1,6 @@
 //! Plan of the step to one row, as the model gets it: [`StepPlan`].
 
-use stickslip_dynamics::{StepInput, Twist};
+use stickslip_dynamics::{PusherMotion, StepInput, Twist};
 
 use crate::particle::estimate::sums::Reference;
 use crate::particle::sensor::observation::Observation;
@@ -21,8 +21,10 @@ pub enum ParameterNoise {
 /// A pusher that is not seen and may move the object (robust model).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UnseenPusher {
-    /// Its last twist.
+    /// Its last twist, of a hand the mean of its fingers'.
     pub twist: Twist,
+    /// Speed of its fastest finger then (m/s).
+    pub speed: f64,
     /// True if it would have reached a hidden object, had it gone on like that.
     pub reached: bool,
     /// True if it does so in this step.
@@ -69,9 +71,9 @@ pub struct StepPlan {
     pub unseen_pusher: Option<UnseenPusher>,
     /// True if the pusher has just come back into view (robust model).
     pub pusher_is_back: bool,
-    /// Twist with which the pusher would have gone on, if it stops at the end of the step (robust
-    /// model).
-    pub stopped: Option<Twist>,
+    /// Motion in which the pusher would have gone on, if it stops at the end of the step (robust
+    /// model). Only its twists count.
+    pub stopped: Option<PusherMotion>,
     /// Gap up to which bodies touch (m), (22).
     pub touching: f64,
     /// History slot for the pose at the end of the step, where past poses are kept.

@@ -1,10 +1,13 @@
 //! A pusher that is not seen (robust model; docs/model.md (44)): where it may be,
 //! [`HiddenPusher`], and how it moves the object.
 
-use stickslip_dynamics::{Particles, Placed, Pose, Scene, StepInput, Twist};
+use stickslip_dynamics::{
+    FingerMotion, Particles, Placed, Pose, PusherMotion, Scene, StepInput, Twist,
+};
 use stickslip_filter::{BlockMut, Draw};
 
 use crate::gap::gap;
+use crate::particle::sensor::pusher_likelihood::fastest;
 use crate::particle::set::chunk::{Column, LANES, is_set};
 use crate::particle::set::columns::Columns;
 use crate::particle::transition::propagation::{Propagation, Transition};
@@ -16,8 +19,9 @@ use crate::tuning::{
 /// State of the pusher when it was last seen, and its motion since.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct HiddenPusher {
-    /// Its last twist, and where it is if it goes on like that; `None` before it was seen.
-    last: Option<(Twist, Pose)>,
+    /// Its last motion, and where its fingers are if they go on like that; `None` before it was
+    /// seen.
+    last: Option<PusherMotion>,
     /// True if it moved then, as far as its track can tell.
     moved: bool,
     /// True if it would have reached the object by now.
@@ -50,10 +54,9 @@ impl HiddenPusher {
         let Some(motion) = last.pusher else {
             return false;
         };
-        let then = motion.pose.advance(motion.twist, last.h);
         let just_back = self.back_for < JUST_BACK;
         *self = Self {
-            last: Some((motion.twist, then)),
+            last: Some(motion.map(|finger| advanced(finger, last.h))),
             moved: moves,
             reached: false,
             back_for: self.back_for + h,
@@ -74,21 +77,48 @@ impl HiddenPusher {
     ) -> Option<UnseenPusher> {
         self.back_for = 0.0;
         let reached_before = self.reached;
-        if let Some((twist, at)) = &mut self.last {
-            *at = at.advance(*twist, h);
+        if let Some(pusher) = &mut self.last {
+            *pusher = pusher.map(|finger| advanced(finger, h));
             let hidden_object = hidden_object.filter(|_| self.moved && !reached_before);
-            let pusher = Placed::new(&scene.pusher.shape, *at);
-            let gap_to = |object| gap(&Placed::new(&scene.object.shape, object), &pusher);
-            self.reached |= hidden_object
-                .and_then(gap_to)
-                .is_some_and(|gap| gap < REACHED);
+            for (shape, finger) in scene.pusher.fingers.iter().zip(pusher.iter()) {
+                let finger = Placed::new(shape, finger.pose);
+                let gap_to = |object| gap(&Placed::new(&scene.object.shape, object), &finger);
+                self.reached |= hidden_object
+                    .and_then(gap_to)
+                    .is_some_and(|gap| gap < REACHED);
+            }
         }
         (self.moved || hidden_object.is_none()).then_some(UnseenPusher {
-            twist: self.last.map(|(twist, _)| twist).unwrap_or_default(),
+            twist: self
+                .last
+                .map(|pusher| mean_twist(&pusher))
+                .unwrap_or_default(),
+            speed: self.last.map_or(0.0, |pusher| fastest(&pusher)),
             reached: self.reached,
             reaches: self.reached && !reached_before,
         })
     }
+}
+
+/// The finger `h` seconds later.
+fn advanced(finger: FingerMotion, h: f64) -> FingerMotion {
+    FingerMotion {
+        pose: finger.pose.advance(finger.twist, h),
+        ..finger
+    }
+}
+
+/// Mean twist of the fingers: that of the hand, if it closes.
+fn mean_twist(pusher: &PusherMotion) -> Twist {
+    let share = 1.0 / pusher.len() as f64;
+    let mut mean = Twist::default();
+    for finger in pusher.iter() {
+        let fields = mean.fields_mut().into_iter();
+        fields
+            .zip(finger.twist.fields())
+            .for_each(|(mean, twist)| *mean += share * twist);
+    }
+    mean
 }
 
 impl Propagation {
@@ -106,7 +136,7 @@ impl Propagation {
         block: &BlockMut<'_>,
     ) {
         let rho = transition.setup.scene.object.gyration_radius();
-        let speed = libm::hypot(pusher.twist.vx, pusher.twist.vy).max(UNSEEN_SPEED);
+        let speed = pusher.speed.max(UNSEEN_SPEED);
         let h = plan.duration();
         let lasts = if plan.is_dark() {
             UNSEEN_LASTS_IN_THE_DARK
@@ -162,7 +192,7 @@ impl Propagation {
     ) {
         let rho = transition.setup.scene.object.gyration_radius();
         let pusher = plan.substeps.last().and_then(|step| step.pusher);
-        let speed = pusher.map_or(0.0, |p| libm::hypot(p.twist.vx, p.twist.vy));
+        let speed = pusher.map_or(0.0, |pusher| fastest(&pusher));
         let most = Column::splat(speed.max(UNSEEN_SPEED));
         let turn = twist.omega * rho;
         let found = (twist.vx * twist.vx + twist.vy * twist.vy + turn * turn).sqrt();

@@ -25,8 +25,8 @@ impl Propagation {
             let Twist { vx, vy, omega } = self.particles[chunk].twist;
             let speed = vx.abs() + vy.abs() + omega.abs();
             let mut touched = flag(block, Columns::PUSHER_WAS_NEAR, chunk) | speed.gt(Lanes::ZERO);
-            for j in 0..columns.fixels() {
-                touched = touched | flag(block, columns.fixel_was_near(j), chunk);
+            for j in 0..columns.others() {
+                touched = touched | flag(block, columns.other_was_near(j), chunk);
             }
             self.untouched[chunk] = !touched;
         }

@@ -29,9 +29,10 @@ pub(crate) struct Unknown {
 /// Name of an unknown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Name {
-    /// Offset of the pusher from its logged poses: x, y (`pusher_offset`).
+    /// Offset of the pusher, or of a hand's first finger, from its logged poses: x, y
+    /// (`pusher_offset`).
     PusherOffset,
-    /// Turn of the pusher from its logged angle (`camera.pusher_orientation_std`).
+    /// Turn of the pusher's fingers from their logged angles (`camera.pusher_orientation_std`).
     PusherTurn,
     /// ln of the scale of the rig (`roughness`).
     Roughness,
@@ -41,8 +42,9 @@ pub(crate) enum Name {
     ForceScale,
     /// Displacement and turn of the feet: x, y, angle (`centre_of_friction`, `tripod_angle`).
     Feet,
-    /// Offset of a fixel from its position: x, y (`fixel_position`).
-    FixelOffset,
+    /// Offset of a fixel from its position, or of another finger from its logged poses: x, y
+    /// (`fixel_position`, `pusher_offset`).
+    OtherOffset,
 }
 
 /// Event that makes measurements depend on an unknown.
@@ -50,13 +52,14 @@ pub(crate) enum Name {
 pub(crate) enum Event {
     /// The pusher comes near the object.
     PusherNear,
-    /// The fixel that the unknown belongs to comes near.
-    FixelNear,
+    /// The fixel, or the other finger, that the unknown belongs to comes near.
+    OtherNear,
     /// The object moves.
     Motion,
 }
 
-/// The unknowns, in the order of their columns. The fixels' come last, fixel by fixel.
+/// The unknowns, in the order of their columns. Those of fixels and other fingers come last,
+/// body by body.
 pub(crate) const UNKNOWNS: [Unknown; 7] = [
     unknown(Name::PusherOffset, 2, Event::PusherNear, true),
     unknown(Name::PusherTurn, 1, Event::PusherNear, true),
@@ -64,7 +67,7 @@ pub(crate) const UNKNOWNS: [Unknown; 7] = [
     unknown(Name::Latency, 1, Event::PusherNear, true),
     unknown(Name::ForceScale, 1, Event::Motion, false),
     unknown(Name::Feet, 3, Event::Motion, true),
-    unknown(Name::FixelOffset, 2, Event::FixelNear, true),
+    unknown(Name::OtherOffset, 2, Event::OtherNear, true),
 ];
 
 const fn unknown(name: Name, numbers: usize, identified_by: Event, moved: bool) -> Unknown {
@@ -92,16 +95,16 @@ pub(crate) fn numbers(columns: Columns) -> impl Iterator<Item = Number> {
     let kept = UNKNOWNS.into_iter().filter(move |of| columns.has(of.name));
     kept.flat_map(move |of| {
         let copies = match of.identified_by {
-            Event::FixelNear => columns.fixels(),
+            Event::OtherNear => columns.others(),
             Event::PusherNear | Event::Motion => 1,
         };
-        (0..copies).flat_map(move |fixel| {
+        (0..copies).flat_map(move |other| {
             let identified = match of.identified_by {
                 Event::PusherNear => Columns::PUSHER_WAS_NEAR,
-                Event::FixelNear => columns.fixel_was_near(fixel),
+                Event::OtherNear => columns.other_was_near(other),
                 Event::Motion => Columns::identified(MU_S),
             };
-            let first = columns.unknown(of.name, fixel);
+            let first = columns.unknown(of.name, other);
             (first..first + of.numbers).map(move |column| Number {
                 column,
                 identified,
@@ -145,7 +148,7 @@ impl Unknown {
             | Name::Roughness
             | Name::Latency
             | Name::ForceScale
-            | Name::FixelOffset => true,
+            | Name::OtherOffset => true,
         }
     }
 }
@@ -197,7 +200,7 @@ impl Propagation {
             },
         );
         for (before, particles) in self.lag_before.iter_mut().zip(&self.particles) {
-            *before = squared(particles.pusher_lag);
+            *before = squared(particles.pusher_lag[0]);
         }
     }
 

@@ -27,7 +27,7 @@ impl Propagation {
         setup.uncertainty.well_measured_at(roughness).sqrt()
     }
 
-    /// Loads the offsets of each particle's pusher and fixels from their poses, for all substeps.
+    /// Loads the offsets of each particle's fingers and fixels from their poses, for all substeps.
     #[inline(always)]
     pub(crate) fn load_offsets(
         &mut self,
@@ -48,8 +48,12 @@ impl Propagation {
             let roughness = roughness(columns, block, chunk);
             let scale = (roughness * unsure.roughness).exp();
             let of_pusher = scale * unsure.pusher_offset;
-            let pusher = offset(columns.unknown(Name::PusherOffset, 0), chunk, of_pusher);
-            self.pusher_offsets.push(pusher);
+            let first = offset(columns.unknown(Name::PusherOffset, 0), chunk, of_pusher);
+            self.pusher_offsets.push(first);
+            let others = columns.fixels()..columns.others();
+            let others =
+                others.map(|j| offset(columns.unknown(Name::OtherOffset, j), chunk, of_pusher));
+            self.pusher_offsets.extend(others);
             if pusher_turn > 0.0 {
                 let mut turn = Lanes::ZERO;
                 load_columns(
@@ -63,7 +67,7 @@ impl Propagation {
             let of_fixels = scale * unsure.well_measured_at(roughness) * unsure.fixel_position;
             let fixels = 0..columns.fixels();
             let fixels =
-                fixels.map(|j| offset(columns.unknown(Name::FixelOffset, j), chunk, of_fixels));
+                fixels.map(|j| offset(columns.unknown(Name::OtherOffset, j), chunk, of_fixels));
             self.fixel_offsets.extend(fixels);
         }
     }

@@ -33,7 +33,7 @@ pub fn setup(fixels: &[[f64; 2]]) -> Setup {
             },
             feet: Feet::Tripod { angle: 0.0 },
             pusher: Pusher {
-                shape: disc(0.005),
+                fingers: vec![disc(0.005)],
                 stall_force: Some(20.0),
             },
             fixels: fixels.iter().map(fixel).collect(),

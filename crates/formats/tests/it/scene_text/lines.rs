@@ -41,7 +41,7 @@ pub const TRIPOD: [&str; 2] = ["tripod_radius", "tripod_angle"];
 /// The scene with all of its keys but those of `[support]` in `without`.
 pub fn all_keys(text: &str, without: [&str; 2]) -> String {
     let shown = |line: &Line<'_>| match (line.table, line.key, line.value) {
-        ("fixel", "", _) => "[[fixel]]\n".to_owned(),
+        ("fixel" | "finger", "", _) => format!("[[{}]]\n", line.table),
         (table, "", _) => format!("[{table}]\n"),
         ("support", key, _) if without.contains(&key) => String::new(),
         (_, key, value) => format!("{key} = {value}\n"),

@@ -43,7 +43,7 @@ pub fn setup() -> Setup {
         },
         feet: Feet::Tripod { angle: 0.0 },
         pusher: Pusher {
-            shape: disc(0.005),
+            fingers: vec![disc(0.005)],
             stall_force: None,
         },
         fixels: vec![fixel(0.09, 0.01), fixel(0.09, -0.02)],
@@ -110,14 +110,14 @@ fn estimate(rows: usize, off: f64, learns: bool) -> Estimate {
             friction: learns.then_some(friction),
             spread: learns.then_some(spread),
             contact_pusher: learns.then_some(0.5),
-            contact_fixels: learns.then(|| vec![0.25, 1.0]),
+            contact_others: learns.then(|| vec![0.25, 1.0]),
             ..EstimateRow::default()
         }
     };
     Estimate {
         time: log(rows).time,
         rows: (0..rows).map(row).collect(),
-        fixels: 2,
+        others: 2,
         has_tripod: true,
     }
 }
