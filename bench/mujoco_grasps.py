@@ -1,6 +1,6 @@
 """Grasps in MuJoCo: 3-D physics, an object on twelve irregular feet, soft contacts, steps of 0.25 ms.
 
-    python3 bench/mujoco_grasps.py FIRST LAST OUT [--force]
+    python3 bench/mujoco_grasps.py FIRST LAST OUT [--force | --jaw]
 
 Needs `pip install mujoco numpy`; a grasp takes about 5 s. Each seed from FIRST to LAST - 1 gives a folder (scene.toml,
 log.csv, truth.csv, truth.json). Left out are seeds whose object touches no fixel, touches one before the pusher, or
@@ -9,6 +9,9 @@ within 40 rows. The published sets are from MuJoCo 4.0.0; another version may ch
 A pusher on a rail along x pushes the object into three disc fixels. Its drive has a limited force and a ripple of
 3 %. scene.toml has exact mass, inertia and shapes; friction and support tripod are guesses. All numbers are SI, in the
 world frame W if nothing else is said.
+
+With `--jaw` there are no fixels. Two fingers on one spindle close along x about an object that is off their middle. The
+spindle's force is limited: the forces on both fingers add up to it. Left out are seeds whose object touches no finger.
 
 - log.csv: camera noise 0.3 mm and 0.3 degrees, pusher noise 0.1 mm, 2 % repeated rows; touch means more than 0.05 N
 - forces: means over the interval before a row, whose 133 steps (33.25 ms) count as 1/30 s
@@ -40,6 +43,12 @@ TOUCH = 0.05  # N
 FORCE_STD, FORCE_BIAS = 0.03, 0.05  # N
 TRUTH = "time,x,y,theta,vx,vy,omega,pusher_x,pusher_y,force_pusher,force_1,force_2,force_3"
 LOG = "time,object_x,object_y,object_theta,pusher_x,pusher_y,pusher_theta,tactile_1,tactile_2,tactile_3"
+JAW_FRAMES = 240
+JAW_TRUTH = "time,x,y,theta,vx,vy,omega,pusher_x,pusher_y,force_pusher,force_1"
+JAW_LOG = (
+    "time,object_x,object_y,object_theta,pusher_x,pusher_y,pusher_theta,finger_1_x,finger_1_y,finger_1_theta"
+    ",tactile_1,tactile_2"
+)
 FORCE = ",pusher_force_x,pusher_force_y"
 
 
@@ -114,8 +123,8 @@ def draw_feet(draw, parts, radius):
     return feet
 
 
-def draw_grasp(draw, seed):
-    """Draws an experiment. The order of the draws fixes the published sets; `parts` and `feet` are in O."""
+def draw_object(draw, seed):
+    """Draws shape, pusher and friction of an experiment; `parts` are in O."""
     grasp = SimpleNamespace(shape=list(SHAPES)[seed % len(SHAPES)])
     grasp.pusher = "disc" if np.random.default_rng(1000 + seed).random() < 0.5 else "bar"
     grasp.parts, inertia_per_mass = about_centre_of_mass(SHAPES[grasp.shape])
@@ -124,6 +133,30 @@ def draw_grasp(draw, seed):
     grasp.mass = draw.uniform(0.2, 0.8)
     grasp.inertia = grasp.mass * inertia_per_mass
     grasp.mu_s, grasp.mu_p, grasp.mu_f = draw.uniform(0.15, 0.4), draw.uniform(0.15, 0.5), draw.uniform(0.1, 0.4)
+    return grasp, corners
+
+
+def draw_jaw(draw, seed):
+    """Draws an experiment with two fingers; `parts` and `feet` are in O."""
+    grasp, corners = draw_object(draw, seed)
+    grasp.fixels, grasp.fixel_radius = [], 0.0
+    grasp.angle, grasp.y = draw.uniform(-math.pi, math.pi), 0.0
+    grasp.speed = draw.choice([0.008, 0.015, 0.025])
+    grasp.feet = draw_feet(draw, grasp.parts, grasp.radius)
+    grasp.stall = draw.choice([5.0, 10.0, 20.0]) * grasp.mass * GRAVITY * grasp.mu_s
+    lead = PUSHER_RADIUS if grasp.pusher == "disc" else BAR
+    reach_x = math.cos(grasp.angle) * corners[:, 0] - math.sin(grasp.angle) * corners[:, 1]
+    middle = START + draw.uniform(-0.01, 0.01)
+    half = max(middle - START - reach_x.min(), START + reach_x.max() - middle) + lead + draw.uniform(0.005, 0.015)
+    y = draw.uniform(-0.35, 0.35) * grasp.radius
+    grasp.fingers = [(middle - half, y, 1), (middle + half, y, -1)]
+    grasp.travel = half - lead - 0.001  # until the fingers would meet
+    return grasp
+
+
+def draw_grasp(draw, seed):
+    """Draws an experiment. The order of the draws fixes the published sets; `parts` and `feet` are in O."""
+    grasp, corners = draw_object(draw, seed)
     grasp.fixels, grasp.fixel_radius = draw_fixels(draw, grasp.radius)
     grasp.angle, grasp.y = draw.uniform(-math.pi, math.pi), draw.uniform(-0.004, 0.004)
     grasp.speed = draw.choice([0.012, 0.02, 0.03])
@@ -136,12 +169,13 @@ def draw_grasp(draw, seed):
     grasp.stall = draw.choice([10.0, 20.0]) * grasp.mass * GRAVITY * grasp.mu_s
     draw.uniform()  # unused
     depth = 2 * min(abs(reach_x).max(), grasp.radius) * draw.uniform(0.35, 0.7)
-    grasp.stop_x = grasp.fixels[0][0] - grasp.fixel_radius - lead - depth  # end of the pusher's travel
+    grasp.travel = grasp.fixels[0][0] - grasp.fixel_radius - lead - depth - grasp.pusher_x
+    grasp.fingers = [(grasp.pusher_x, grasp.pusher_y, 1)]  # x, y, and the sign of its motion along x
     return grasp
 
 
 def model_text(grasp):
-    """The experiment in MuJoCo's XML. Joint 0 is the pusher's rail, joint 1 the free object."""
+    """The experiment in MuJoCo's XML. The first joints are the fingers' rails, the last one is the free object."""
     rigid = 'contype="2" conaffinity="1" priority="2"'
     meshes, geoms, fixels = "", "", ""
     for k, part in enumerate(grasp.parts):
@@ -155,6 +189,13 @@ def model_text(grasp):
         cylinder = f'type="cylinder" size="{grasp.fixel_radius} .02" friction="{grasp.mu_f} 0 0"'
         fixels += f'<body pos="{x} {y} .02"><geom name="fixel{k}" {cylinder} {rigid}/></body>'
     solid = f'"cylinder" size="{PUSHER_RADIUS} .02"' if grasp.pusher == "disc" else f'"box" size="{BAR} .02 .02"'
+    fingers, spindle = "", ""
+    for k, (x, y, sign) in enumerate(grasp.fingers):
+        fingers += f"""<body pos="{x} {y} .02"><joint name="rail{k}" type="slide" axis="{sign} 0 0"/>
+        <inertial pos="0 0 0" mass="5" diaginertia=".01 .01 .01"/>
+        <geom name="finger{k}" type={solid} friction="{grasp.mu_p} 0 0" {rigid}/></body>"""
+        if k > 0:
+            spindle += f'<joint joint1="rail0" joint2="rail{k}" polycoef="0 1 0 0 0" solref=".002 1"/>'
     turn = f"{math.cos(grasp.angle / 2)} 0 0 {math.sin(grasp.angle / 2)}"
     tilt = grasp.mass * grasp.radius * grasp.radius / 4
     return f"""<mujoco>
@@ -165,21 +206,20 @@ def model_text(grasp):
     <worldbody>
       <geom type="plane" size="1 1 .1" contype="8" conaffinity="4" friction="{grasp.mu_s} 0 0" priority="2"/>
       {fixels}
-      <body pos="{grasp.pusher_x} {grasp.pusher_y} .02"><joint name="rail" type="slide" axis="1 0 0"/>
-        <inertial pos="0 0 0" mass="5" diaginertia=".01 .01 .01"/>
-        <geom name="pusher" type={solid} friction="{grasp.mu_p} 0 0" {rigid}/></body>
+      {fingers}
       <body pos="{START} {grasp.y} {HEIGHT / 2 + 0.002}" quat="{turn}"><freejoint/>
         <inertial pos="0 0 0" mass="{grasp.mass}" diaginertia="{tilt} {tilt} {grasp.inertia}"/>{geoms}</body>
     </worldbody>
+    <equality>{spindle}</equality>
     <actuator>
-      <velocity joint="rail" kv="2000" ctrlrange="-1 1" forcerange="-{grasp.stall} {grasp.stall}"/>
+      <velocity joint="rail0" kv="2000" ctrlrange="-1 1" forcerange="-{grasp.stall} {grasp.stall}"/>
     </actuator></mujoco>"""
 
 
 def add_forces(model, data, bodies, sizes, push):
     """Adds the contact forces (N) of one step.
 
-    `sizes` (4,): of pusher and fixels, along the normal and the first tangent. `push` (2,): of the pusher on the
+    `sizes` (n,): of fingers and fixels, along the normal and the first tangent. `push` (2,): of the pusher on the
     object, in W.
     """
     force = np.zeros(6)
@@ -196,30 +236,40 @@ def add_forces(model, data, bodies, sizes, push):
 
 
 def simulate(grasp):
-    """Rows of truth.csv (FRAMES + 1, 13), and the mean force of the pusher on the object (FRAMES + 1, 2) in W, N."""
+    """Rows of truth.csv, and the mean force of the pusher on the object (n, 2) in W, N.
+
+    Also the way of each finger along x (n, fingers).
+    """
     model = mujoco.MjModel.from_xml_string(model_text(grasp))
     data = mujoco.MjData(model)
-    bodies = {model.geom(name).id: k for k, name in enumerate(("pusher", "fixel1", "fixel2", "fixel3"))}
+    names = [f"finger{k}" for k in range(len(grasp.fingers))] + [f"fixel{k + 1}" for k in range(len(grasp.fixels))]
+    bodies = {model.geom(name).id: k for k, name in enumerate(names)}
+    rails, frames = len(grasp.fingers), JAW_FRAMES if len(grasp.fingers) > 1 else FRAMES
+    free = data.qpos[rails:]
+    signs = [sign for _, _, sign in grasp.fingers]
     for _ in range(2000):  # the object settles
         mujoco.mj_step(model, data)
     start = data.time
-    theta = 2 * math.atan2(data.qpos[7], data.qpos[4])
-    rows, pushes = [], []
-    for frame in range(FRAMES + 1):
-        sizes, push = np.zeros(4), np.zeros(2)
+    theta = 2 * math.atan2(free[6], free[3])
+    rows, pushes, ways = [], [], []
+    for frame in range(frames + 1):
+        sizes, push = np.zeros(len(names)), np.zeros(2)
         if frame > 0:
-            travels = grasp.pusher_x + data.qpos[0] < grasp.stop_x
+            travels = data.qpos[0] < grasp.travel
             for _ in range(STEPS):
                 ripple = 1 + 0.03 * math.sin(7 * data.time)
                 data.ctrl[0] = grasp.speed * ripple if travels and data.time - start > 0.5 else 0
                 mujoco.mj_step(model, data)
                 add_forces(model, data, bodies, sizes, push)
-        turned = 2 * math.atan2(data.qpos[7], data.qpos[4])
+        turned = 2 * math.atan2(free[6], free[3])
         theta += (turned - theta + math.pi) % (2 * math.pi) - math.pi
-        place = (grasp.pusher_x + data.qpos[0], grasp.pusher_y)
-        rows.append([frame / RATE, *data.qpos[1:3], theta, *data.qvel[1:3], data.qvel[6], *place, *(sizes / STEPS)])
+        speed = data.qvel[rails:]
+        x, y, sign = grasp.fingers[0]
+        place = (x + sign * data.qpos[0], y)
+        rows.append([frame / RATE, *free[:2], theta, *speed[:2], speed[5], *place, *(sizes / STEPS)])
         pushes.append(push / STEPS)
-    return np.array(rows), np.array(pushes)
+        ways.append(signs * data.qpos[:rails])
+    return np.array(rows), np.array(pushes), np.array(ways)
 
 
 def sense(draw, truth):
@@ -230,7 +280,7 @@ def sense(draw, truth):
     for k in range(1, rows):
         if draw.random() < 0.02:
             camera[k], pusher[k] = camera[k - 1], pusher[k - 1]
-    return camera, pusher, (truth[:, 10:13] > TOUCH).astype(int)
+    return camera, pusher, (truth[:, 10:] > TOUCH).astype(int)
 
 
 def sense_force(push, seed):
@@ -251,7 +301,8 @@ def scene_text(grasp, force):
     bar = "shape = [ { polygon = [[-0.004, -0.02], [0.004, -0.02], [0.004, 0.02], [-0.004, 0.02]] } ]"
     parts = "".join(f"  {polygon(part)},\n" for part in grasp.parts)
     fixel = disc(grasp.fixel_radius)
-    fixels = "".join(f"\n[[fixel]]\nposition = [{x:.6f}, {y:.6f}]\n{fixel}\n" for x, y in grasp.fixels)
+    fixels = "" if grasp.fixels else f"\n[[finger]]\n{disc(PUSHER_RADIUS) if grasp.pusher == 'disc' else bar}\n"
+    fixels += "".join(f"\n[[fixel]]\nposition = [{x:.6f}, {y:.6f}]\n{fixel}\n" for x, y in grasp.fixels)
     wrench = f"\n[wrench]\nforce_std = {FORCE_STD}\n" if force else ""
     return f"""# Nominal values; the truth of the friction parameters is not in this file.
 gravity = {GRAVITY}
@@ -282,11 +333,45 @@ pusher_orientation_std = 0.0
 {wrench}"""
 
 
+def write(folder, grasp, facts, tables, force=False):
+    """Writes an experiment; `tables` has header, formats and columns of truth.csv and of log.csv."""
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "scene.toml").write_text(scene_text(grasp, force))
+    (folder / "truth.json").write_text(json.dumps(facts, indent=1))
+    for name, (header, formats, columns) in tables.items():
+        np.savetxt(folder / name, np.column_stack(columns), formats, ",", header=header, comments="")
+
+
+def record_jaw(seed, out):
+    """Draws, simulates and writes the experiment of one seed with two fingers."""
+    draw = np.random.default_rng(seed)
+    grasp = draw_jaw(draw, seed)
+    truth, _, ways = simulate(grasp)
+    camera, pusher, _ = sense(draw, truth)
+    touches = [int(np.argmax(force > 0.02)) if (force > 0.02).any() else None for force in truth.T[9:]]
+    first = min((row for row in touches if row is not None), default=0)
+    if first < 10 or not np.isfinite(truth).all():
+        return
+    held = (truth[-30:, 9:] > 0.02).all()
+    facts = {"source": "MuJoCo 4.0.0, 3-D, 12 irregular feet, 0.25 ms, jaw"}
+    facts |= {key: getattr(grasp, key) for key in ("shape", "pusher", "mu_s", "mu_p")}
+    facts |= {"first_pusher_contact": touches[0], "first_fixel_contacts": touches[1:], "occlude_from": first - 5}
+    x, y, _ = grasp.fingers[1]
+    finger = np.column_stack([x + ways[:, 1], np.full(len(ways), y)])
+    finger = finger + draw.normal(size=finger.shape) * PUSHER_STD
+    still = np.zeros(len(truth))
+    log = [truth[:, 0], camera, pusher, still, finger, still, (truth[:, 9:] > TOUCH).astype(int)]
+    formats = ["%.6f"] * 6 + ["%d", "%.6f", "%.6f"] + ["%d"] * 3
+    tables = {"truth.csv": (JAW_TRUTH, "%.7g", [truth]), "log.csv": (JAW_LOG, formats, log)}
+    kind = "held" if held else "lost"
+    write(out / f"{kind}-{grasp.shape}-{grasp.pusher}-{seed}", grasp, facts, tables)
+
+
 def record(seed, out, force):
     """Draws, simulates and writes the experiment of one seed."""
     draw = np.random.default_rng(seed)
     grasp = draw_grasp(draw, seed)
-    truth, push = simulate(grasp)
+    truth, push, _ = simulate(grasp)
     camera, pusher, touch = sense(draw, truth)
     pushed = int(np.argmax(truth[:, 9] > 0.02))
     touches = [int(np.argmax(column)) if column.any() else None for column in touch.T]
@@ -304,12 +389,8 @@ def record(seed, out, force):
     if force:
         log.append(sense_force(push, seed))
         header, formats = LOG + FORCE, [*formats, "%.4f", "%.4f"]
-    folder = out / f"{kind}-{grasp.shape}-{grasp.pusher}-{seed}"
-    folder.mkdir(parents=True, exist_ok=True)
-    (folder / "scene.toml").write_text(scene_text(grasp, force))
-    (folder / "truth.json").write_text(json.dumps(facts, indent=1))
-    np.savetxt(folder / "truth.csv", truth, "%.7g", ",", header=TRUTH, comments="")
-    np.savetxt(folder / "log.csv", np.column_stack(log), formats, ",", header=header, comments="")
+    tables = {"truth.csv": (TRUTH, "%.7g", [truth]), "log.csv": (header, formats, log)}
+    write(out / f"{kind}-{grasp.shape}-{grasp.pusher}-{seed}", grasp, facts, tables, force)
 
 
 def main():
@@ -317,10 +398,15 @@ def main():
     parser.add_argument("first", type=int)
     parser.add_argument("last", type=int)
     parser.add_argument("out", type=Path)
-    parser.add_argument("--force", action="store_true")
+    kind = parser.add_mutually_exclusive_group()
+    kind.add_argument("--force", action="store_true")
+    kind.add_argument("--jaw", action="store_true")
     given = parser.parse_args()
     for seed in range(given.first, given.last):
-        record(seed, given.out, given.force)
+        if given.jaw:
+            record_jaw(seed, given.out)
+        else:
+            record(seed, given.out, given.force)
 
 
 if __name__ == "__main__":
