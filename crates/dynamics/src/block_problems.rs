@@ -39,7 +39,7 @@ impl<const W: usize> Source<W> for BlockProblems<'_, W> {
                 context: &self.context,
                 pusher: self.pushers.of(self.first + chunk).as_ref(),
                 fixel_offsets: self.pushers.fixel_offsets(self.first + chunk),
-                foot_offset: self.pushers.foot_offset(self.first + chunk),
+                support: self.pushers.support(self.first + chunk),
             },
             &self.particles[chunk],
             self.narrow,
