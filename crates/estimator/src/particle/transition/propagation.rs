@@ -41,7 +41,7 @@ pub(crate) struct Transition<'o> {
 }
 
 /// Working memory for the particles of one block.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Propagation {
     pub(crate) work: StepWork<LANES>,
     pub(crate) particles: [Particles<LANES>; CHUNKS],
