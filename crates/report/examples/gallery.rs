@@ -15,9 +15,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         .unwrap_or_else(|| "gallery".to_owned());
     std::fs::create_dir_all(&folder)?;
     let figures = [
-        ("errors", errors().to_svg()),
-        ("parameters", parameters().to_svg()),
-        ("poses", poses()?.to_svg()),
+        ("errors", errors().drawing().to_svg()),
+        ("parameters", parameters().drawing().to_svg()),
+        ("poses", poses()?.drawing().to_svg()),
     ];
     for (name, svg) in figures {
         std::fs::write(

@@ -198,8 +198,7 @@ class Player {
     const scrub = (event) => {
       const box = strip.getBoundingClientRect();
       const time = this.data.time[0] + ((event.clientX - box.left) / box.width) * (this.data.time[this.rows - 1] - this.data.time[0]);
-      const row = this.data.time.findIndex((t) => t >= time);
-      this.jump(row < 0 ? this.rows - 1 : row);
+      this.seek(time / 1000);
     };
     strip.addEventListener("pointerdown", (event) => (strip.setPointerCapture(event.pointerId), scrub(event)));
     strip.addEventListener("pointermove", (event) => event.buttons && scrub(event));
@@ -213,6 +212,17 @@ class Player {
       event.preventDefault();
     });
     addEventListener("resize", () => this.arrangeMarks());
+  }
+
+  /** Time shown (s). */
+  get time() {
+    return this.data.time[this.row] / 1000;
+  }
+
+  /** Stops and shows the row at a time (s). */
+  seek(time) {
+    const row = this.data.time.findIndex((t) => t >= 1000 * time - 0.5);
+    this.jump(row < 0 ? this.rows - 1 : row);
   }
 
   /** Stops and shows a row. */
@@ -272,6 +282,7 @@ class Player {
     this.slider.setAttribute("aria-valuetext", `${seconds} s, ${camera}`);
     this.head.setAttribute("d", `M${this.place(row)} 0V100`);
     this.root.dataset.row = row;
+    this.root.dispatchEvent(new CustomEvent("time", { detail: this.time }));
     this.zoom(row);
   }
 
@@ -306,4 +317,4 @@ class Player {
   }
 }
 
-document.querySelectorAll(".player:not(.live)").forEach((root) => new Player(root));
+const players = [...document.querySelectorAll(".player:not(.live)")].map((root) => new Player(root));

@@ -109,12 +109,6 @@ impl Body {
 }
 
 impl Overlay {
-    /// The bodies in the plane, with a scale, as SVG text.
-    #[must_use]
-    pub fn to_svg(&self) -> String {
-        self.drawing().to_svg()
-    }
-
     /// The bodies in the plane, to be put next to other drawings.
     #[must_use]
     pub fn drawing(&self) -> Drawing {
@@ -198,7 +192,7 @@ impl Body {
             ]
         });
         html! {
-            path d=(area) fill=(self.colour.hex()) fill-opacity=(px(self.opacity)) {}
+            @if self.opacity > 0.0 { path d=(area) fill=(self.colour.hex()) fill-opacity=(px(self.opacity)) {} }
             path d=(boundary) fill="none" stroke=(self.colour.hex()) stroke-width=(if self.thin { "1" } else { "2" }) stroke-opacity=[self.thin.then_some("0.16")] stroke-linejoin="round" stroke-linecap="round"
                 stroke-dasharray=[self.line.dashes()] {}
             @if let Some(at) = middle.filter(|_| !self.tag.is_empty()) {

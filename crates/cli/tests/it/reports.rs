@@ -177,7 +177,7 @@ fn filter_writes_a_report_and_the_same_estimate() {
     let page = fs::read_to_string(page).unwrap();
     for text in [
         "class=\"player\"",
-        "The camera turns off at 5.1 s, 0.2 s before the object touches a fixel, and stays off.",
+        "The camera turns off at 5.1 s, 0.2 s before the object touches a <abbr title=\"a fixed body",
         "<h1>filter_report: particle filter</h1>",
         "download=\"filter_report-estimate.csv\"",
         "--occlude 153",
