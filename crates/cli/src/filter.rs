@@ -10,7 +10,7 @@ use clap::CommandFactory;
 use serde::Serialize;
 use stickslip::diagnosis::{Finding, assumed_stall_force, doubts};
 use stickslip::dynamics::Pose;
-use stickslip::{Estimate, Run, TactileUse, keep_threads_awake, run, run_observed};
+use stickslip::{Estimate, Occlusion, Run, TactileUse, keep_threads_awake, run, run_observed};
 use stickslip_evaluation::{LearnedParameter, ScoredRun, Variant};
 use stickslip_formats::{
     Experiment, write_estimate, write_estimate_mcap, write_estimate_tum, write_modes,
@@ -164,31 +164,43 @@ fn report(
     warnings: &[String],
     path: &Path,
 ) -> Result<PathBuf> {
-    let (name, title) = (experiment_name(&given.log), run.title());
-    let occlusion = args.shared.occlusion();
-    let (shown, runs, start) = since_start(experiment, vec![run]);
-    let reported = ReportedExperiment::new(&name, "", &shown, occlusion, runs);
-    let start = start.map(|start| ("times", format!("from {start} s on")));
+    let name = experiment_name(&given.log);
+    let page = page(&name, experiment, (run, args.shared.occlusion()), warnings);
+    let own = origin([
+        ("log", given.log.display().to_string()),
+        ("scene", given.scene.display().to_string()),
+        ("particles", args.shared.particles.to_string()),
+        ("seed", args.seed.to_string()),
+    ]);
     let report = Report {
-        title: format!("{name}: {title}"),
+        origin: own.into_iter().chain(page.origin).collect(),
+        ..page
+    };
+    write_report(path.to_owned(), &report)
+}
+
+/// The page about a run under an occlusion.
+pub fn page(
+    name: &str,
+    experiment: &Experiment,
+    (run, occlusion): (ReportedRun, Occlusion),
+    warnings: &[String],
+) -> Report {
+    let title = format!("{name}: {}", run.title());
+    let (shown, runs, start) = since_start(experiment, vec![run]);
+    let reported = ReportedExperiment::new(name, "", &shown, occlusion, runs);
+    let reference = ("scored against", reference_name(experiment).to_owned());
+    let start = start.map(|start| ("times", format!("from {start} s on")));
+    let origin = [reference].into_iter().chain(start);
+    Report {
+        title,
         summary: warnings
             .iter()
             .map(|text| Block::Note(format!("Warning: {text}")))
             .collect(),
         sections: vec![reported.section()],
-        origin: origin(
-            [
-                ("log", given.log.display().to_string()),
-                ("scene", given.scene.display().to_string()),
-                ("scored against", reference_name(experiment).to_owned()),
-                ("particles", args.shared.particles.to_string()),
-                ("seed", args.seed.to_string()),
-            ]
-            .into_iter()
-            .chain(start),
-        ),
-    };
-    write_report(path.to_owned(), &report)
+        origin: origin.map(|(key, value)| (key.to_owned(), value)).collect(),
+    }
 }
 
 /// Writes the estimate in all forms that are asked for, estimate.csv first.
