@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from stickslip import _native
 from stickslip._columns import Columns, Log
 from stickslip._files import Topics, experiments, load_log, load_scene, log_of, scene_of
-from stickslip._filter import Progress
 from stickslip._native import Error, Scene
+from stickslip._options import Progress
 from stickslip._simulate import Simulation
 
 #: A push: its experiment folder, a simulation, or a scene and a log.

@@ -50,3 +50,27 @@ def test_a_reading_is_0_or_1_as_a_bool_an_int_or_a_numpy_number(scene):
     ]:
         with pytest.raises(stickslip.Error, match=words):
             tracker.push(1.0, **row)
+
+
+def test_a_copy_goes_on_by_itself(demo, scene):
+    log = stickslip.load_log(demo / "log.csv")
+    rows = list(stickslip.rows(log))
+    tracker = stickslip.Tracker(scene, particles=64, late=0.0)
+    assert tracker.particles()["x"].shape == (0,)
+    for row in rows[:120]:
+        tracker.push(**row)
+    twin = tracker.copy()
+    before = tracker.estimate
+    for row in rows[120:140]:
+        own = twin.push(**{**row, "object": None})
+    # what the twin takes leaves the tracker as it was
+    np.testing.assert_equal(tracker.estimate, before)
+    for row in rows[120:140]:
+        again = tracker.push(**{**row, "object": None})
+    np.testing.assert_equal(again, own)
+    # its particles are those of the whole log
+    run = stickslip.particles(log, scene, rows=[139], particles=64, causal=True, occlude=(120, 140))
+    cloud = tracker.particles()
+    assert set(cloud) | {"row"} == set(run)
+    for name, column in cloud.items():
+        np.testing.assert_array_equal(column, run[name][0], err_msg=name)

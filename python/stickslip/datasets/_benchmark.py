@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from typing import Any, Unpack
 
 from stickslip._compare import compare
-from stickslip._filter import FilterOptions
+from stickslip._options import FilterOptions
 
 
 def occlusion_benchmark(
