@@ -5,6 +5,10 @@
 
 /** Time without a row after which the page says so (ms). */
 const SILENCE = 2000;
+/** Intervals of the camera without a pose from which it counts as off: one lost pose is none. */
+const LOST = 3;
+/** Time that the history shows (s). */
+const MINUTE = 60;
 
 class Live {
   constructor(root) {
@@ -14,6 +18,9 @@ class Live {
     this.newest = null;
     /** Time of the latest row (ms), null before the first one. */
     this.latest = null;
+    /** Time of the latest camera pose, and the camera's usual interval (s). */
+    this.seen = this.interval = null;
+    this.past = [];
     this.drawStage();
     setInterval(() => this.listen(), 500);
     this.connect();
@@ -109,12 +116,44 @@ class Live {
     for (const pose of [row.object, row.pusher, known]) this.include(pose);
     while (this.bodies.length < row.particles.length) this.bodies.push(add(this.cloud, "path", { d: this.data.object.line }));
     this.bodies.forEach((body, k) => place(body, row.particles[k]));
-    this.find(".stage").classList.toggle("blind", row.object === null);
-    if (!this.listen()) this.say(row.object === null ? "camera off" : "camera on");
+    const silent = this.look(row);
+    this.find(".stage").classList.toggle("blind", silent !== null);
+    if (!this.listen()) {
+      if (silent === null) this.say("camera on");
+      else this.say("camera off", Number.isFinite(silent) ? ` for ${silent.toFixed(1)} s` : "");
+    }
     this.find(".clock").textContent = `${estimate.time.toFixed(2)} s`;
     this.root.dataset.time = estimate.time;
     this.touch(row);
     this.tell(row);
+    this.remember(estimate, silent !== null);
+  }
+
+  /** Time since the camera's latest pose (s), null while it delivers. */
+  look({ object, estimate: { time } }) {
+    if (object !== null) {
+      const passed = time - this.seen;
+      // an occlusion is no interval of the camera
+      if (this.seen !== null && passed > 0) this.interval = Math.min(passed, this.interval === null ? passed : 1.1 * this.interval);
+      this.seen = time;
+      return null;
+    }
+    const silent = this.seen === null ? Infinity : time - this.seen;
+    return silent > LOST * (this.interval ?? 0) ? silent : null;
+  }
+
+  /** The spread of the last minute, shaded while the camera was off. */
+  remember({ time, std_x, std_y }, dark) {
+    if (this.past.length > 0 && time < this.past.at(-1).time) this.past = [];
+    this.past.push({ time, dark, spread: std_x === null ? null : 1000 * Math.hypot(std_x, std_y) });
+    while (this.past[0].time < time - MINUTE) this.past.shift();
+    const known = this.past.filter(({ spread }) => spread !== null);
+    const most = 1.2 * Math.max(0.1, ...known.map(({ spread }) => spread));
+    const x = (at) => (100 * (at - time)) / MINUTE + 100;
+    const step = (row, k) => `M${x(this.past[Math.max(k - 1, 0)].time)} 0H${x(row.time)}V30H${x(this.past[Math.max(k - 1, 0)].time)}Z`;
+    this.find(".history .dark").setAttribute("d", this.past.flatMap((row, k) => (row.dark ? [step(row, k)] : [])).join(""));
+    this.find(".history .line").setAttribute("d", known.map((row, k) => `${k ? "L" : "M"}${x(row.time)} ${30 * (1 - row.spread / most)}`).join(""));
+    this.find(".most").textContent = `spread in the last minute, axis from 0 to ${most.toPrecision(2)} mm`;
   }
 
   touch({ estimate, tactile }) {
@@ -125,14 +164,25 @@ class Live {
     });
   }
 
-  tell({ estimate, count, missed, latency_ms }) {
+  /** Where the particles are, in words. */
+  places({ modes, mode_weight, mode_x, mode_y, mode_theta }) {
+    if (modes === null || modes === undefined) return ["–", ""];
+    if (modes < 2 || mode_weight === null) return ["1 place", ""];
+    const at = `${(1000 * mode_x).toFixed(0)}, ${(1000 * mode_y).toFixed(0)} mm, ${((180 / Math.PI) * mode_theta).toFixed(0)}°`;
+    return [`${modes} places`, `${(100 * mode_weight).toFixed(0)} % at ${at}`];
+  }
+
+  tell({ estimate, count, missed, collapses, latency_ms }) {
     const spread = (key, unit, scale) => (estimate[`std_${key}`] === null ? "–" : `± ${(scale * estimate[`std_${key}`]).toFixed(2)}${unit}`);
     const shown = [
       ["x", `${(1000 * estimate.x).toFixed(1)} mm`, spread("x", " mm", 1000)],
       ["y", `${(1000 * estimate.y).toFixed(1)} mm`, spread("y", " mm", 1000)],
       ["θ", `${((180 / Math.PI) * estimate.theta).toFixed(1)}°`, spread("theta", "°", 180 / Math.PI)],
       ...["mu_s", "mu_p", "mu_f"].map((key) => [key, estimate[key]?.toFixed(3) ?? "–", spread(key, "", 1)]),
-      ["particles", String(count), ""],
+      ["spread", estimate.std_x === null ? "–" : `${(1000 * Math.hypot(estimate.std_x, estimate.std_y)).toFixed(2)} mm`, ""],
+      ["particles", String(count), estimate.ess === null ? "" : `${estimate.ess.toFixed(0)} effective`],
+      ["they are in", ...this.places(estimate)],
+      ["collapses", String(collapses), ""],
       ["answer took", `${latency_ms.toFixed(2)} ms`, missed === null ? "" : `${missed} late`],
     ];
     const body = this.find("tbody");

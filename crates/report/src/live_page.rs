@@ -51,6 +51,11 @@ pub fn live_page(scene: &Scene, title: &str) -> String {
                                 thead { tr { th scope="col" { "estimate" } th scope="col" {} th scope="col" {} } }
                                 tbody {}
                             }
+                            svg class="history strip" viewBox="0 0 100 30" preserveAspectRatio="none" role="img" aria-label="Spread in the last minute; shaded while the camera is off" {
+                                path class="dark" {}
+                                g class="curve" style={ "--colour:" (Colour::of(Variant::Particle).hex()) } { path class="line" {} }
+                            }
+                            p class="most" {}
                             p class="legend" {
                                 "Filled: what the camera measures. Coloured: the estimate; thin: particles. Fixels are yellow while their sensor "
                                 "is touched; rims turn yellow with the estimated probability that they press on the object: at rest they may touch without."

@@ -18,17 +18,18 @@ pub struct ShownRow<'a> {
     particles: Vec<[f64; 3]>,
     count: usize,
     missed: Option<u64>,
+    collapses: u64,
     latency_ms: f64,
 }
 
 impl<'a> ShownRow<'a> {
     /// The row, the estimate's line of JSON, and how long the answer took (ms); `missed` answers
-    /// were late, where there is a deadline.
+    /// were late, where there is a deadline, and the filter collapsed `collapses` times.
     pub fn new(
         row: &'a Row,
         estimate: &'a RawValue,
         particles: Option<ParticleView<'_>>,
-        (latency_ms, missed): (f64, Option<u64>),
+        (latency_ms, missed, collapses): (f64, Option<u64>, u64),
     ) -> Self {
         let numbers = |pose: Pose| [pose.x, pose.y, pose.theta];
         Self {
@@ -39,6 +40,7 @@ impl<'a> ShownRow<'a> {
             particles: particles.map_or(Vec::new(), |view| drawn(&view)),
             count: particles.map_or(0, |view| view.len()),
             missed,
+            collapses,
             latency_ms,
         }
     }
