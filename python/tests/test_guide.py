@@ -81,6 +81,8 @@ def test_no_link_of_the_book_leads_nowhere(tmp_path):
     for path, text in pages.items():
         for file, anchor in re.findall(r'href="([^"#:]*)(?:#([^"]*))?"', text):
             target = (path.parent / file).resolve() if file else path
+            if target.is_relative_to(tmp_path / "api"):
+                continue  # the site's reference, made of the package and the crates
             assert target.is_file(), f"{path.name}: {file}"
             assert not anchor or f'id="{anchor}"' in target.read_text(), f"{path.name}: {file}#{anchor}"
 
