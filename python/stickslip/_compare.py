@@ -7,7 +7,7 @@ import os
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Unpack
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -19,6 +19,9 @@ from stickslip._native import Error, Scene
 from stickslip._options import DEFAULTS, FilterOptions, with_options
 from stickslip._page import Page
 from stickslip._score import score
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
 
 #: Options of each variant: method, use of tactile readings, and ``camera_on`` for no occlusion.
 _VARIANTS: dict[str, dict[str, Any]] = {

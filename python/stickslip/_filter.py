@@ -5,7 +5,7 @@ from __future__ import annotations
 import operator
 import os
 from collections.abc import Sequence
-from typing import Unpack
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +17,9 @@ from stickslip._files import log_of, scene_of
 from stickslip._native import Error, Scene
 from stickslip._options import FilterOptions, arguments, with_options
 from stickslip._page import run_of
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
 
 
 @with_options

@@ -6,13 +6,16 @@ import html
 import os
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, Unpack
+from typing import TYPE_CHECKING, Any
 
 from stickslip import _native
 from stickslip._columns import Columns, Log, columns_of
 from stickslip._files import load_truth, log_of, scene_of
 from stickslip._native import Error, Scene
 from stickslip._options import FilterOptions, arguments, with_options
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
 
 
 class Page(str):

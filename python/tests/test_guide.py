@@ -7,7 +7,6 @@ import shlex
 import shutil
 import subprocess
 import sys
-import tomllib
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +14,7 @@ import pytest
 from conftest import ROOT
 
 import stickslip
+from stickslip._toml import tomllib
 
 DOCS = ROOT / "docs"
 GUIDE = DOCS / "guide"
