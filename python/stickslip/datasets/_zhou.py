@@ -109,9 +109,9 @@ def import_two_finger_set(
     """
     scenes = {
         "bigrect": two_finger_scene(
-            [[0, 0], [0.05, 0], [0.05, 0.035], [0, 0.035]], position_std=4e-4, orientation_std=0.005
+            [[0.0, 0.0], [0.05, 0.0], [0.05, 0.035], [0.0, 0.035]], position_std=4e-4, orientation_std=0.005
         ),
-        "tri": two_finger_scene([[0, 0], [0, 0.0275], [-0.058, 0]], position_std=1e-3, orientation_std=0.015),
+        "tri": two_finger_scene([[0.0, 0.0], [0.0, 0.0275], [-0.058, 0.0]], position_std=1e-3, orientation_std=0.015),
         "butter": butter,
     }
     pushes: list[Path] = []
