@@ -1,5 +1,7 @@
 //! `stickslip fit`: learns parameters that a scene cannot know from many pushes.
 
+mod figures;
+
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -209,12 +211,16 @@ fn validations(result: &FitResult) -> impl Iterator<Item = (&'static str, &Cross
 fn page(result: &FitResult, seed: u64) -> Report {
     let mut sections = vec![Section {
         title: "Fitted parameters".to_owned(),
-        blocks: vec![Block::Table(parameters(&result.fit), String::new())],
+        blocks: vec![
+            figures::marginals(&result.fit),
+            Block::Table(parameters(&result.fit), String::new()),
+        ],
     }];
     for (title, validation) in validations(result) {
         sections.push(Section {
             title: format!("Predictions of {title}"),
             blocks: vec![
+                figures::errors(validation),
                 Block::Table(
                     errors(validation, title),
                     "Median over the pushes".to_owned(),

@@ -50,6 +50,8 @@ pub struct Fit {
     pub noise: Noise,
     /// Facts about the exploration of the posterior.
     pub sampling: Sampling,
+    /// Pushes that teach nothing, since nothing touches the object, each with what was found.
+    pub left_out: Vec<String>,
     /// Samples of the posterior, as [`Posterior`] takes them.
     #[serde(skip)]
     pub(crate) samples: Vec<Vec<f64>>,
@@ -115,26 +117,34 @@ pub fn fit(
     progress: &Listener<'_>,
 ) -> Result<Fit, FitError> {
     let progress = Progress::new(progress, options.most_vectors());
-    let prepared = prepare(pushes, &progress)?;
-    fit_prepared(&prepared.iter().collect::<Vec<_>>(), options, &progress)
+    let (prepared, left_out) = prepare(pushes, &progress)?;
+    let fit = fit_prepared(&prepared.iter().collect::<Vec<_>>(), options, &progress)?;
+    Ok(Fit { left_out, ..fit })
 }
 
-/// Pushes made ready; at least two.
+/// Pushes made ready, at least two; and those in which nothing touches the object, in words.
 pub(crate) fn prepare(
     pushes: &[Push],
     progress: &Progress<'_>,
-) -> Result<Vec<PreparedPush>, FitError> {
-    if pushes.len() < 2 {
-        return Err(FitError::TooFewPushes {
-            pushes: pushes.len(),
-            least: 2,
-        });
-    }
-    let prepared = pushes.iter().cloned().map(|push| {
+) -> Result<(Vec<PreparedPush>, Vec<String>), FitError> {
+    let (mut ready, mut untouched) = (Vec::new(), Vec::new());
+    for push in pushes {
         progress.show();
-        PreparedPush::new(push)
-    });
-    prepared.collect()
+        match PreparedPush::new(push.clone()) {
+            Ok(push) => ready.push(push),
+            Err(error @ FitError::Untouched { .. }) => untouched.push(error),
+            Err(error) => return Err(error),
+        }
+    }
+    let mut untouched = untouched.into_iter();
+    match (ready.len(), untouched.next()) {
+        (2.., first) => {
+            let left_out = first.into_iter().chain(untouched);
+            Ok((ready, left_out.map(|push| push.to_string()).collect()))
+        }
+        (_, Some(first)) => Err(first),
+        (pushes, None) => Err(FitError::TooFewPushes { pushes, least: 2 }),
+    }
 }
 
 impl FitOptions {
@@ -173,6 +183,7 @@ pub(crate) fn fit_prepared<'a>(
             .collect(),
         correlation: correlation(&covariance, free),
         noise: posterior.noise(&means),
+        left_out: Vec::new(),
         sampling: sampling(&chain, sampled),
         samples,
     };

@@ -83,7 +83,7 @@ pub fn cross_validate(
     let most = options.most_vectors();
     let before = |fold: usize| fold as u64 * most;
     let all = before(folds);
-    let prepared = prepare(pushes, &Progress::new(&|_, _| progress(0, all), most))?;
+    let (prepared, _) = prepare(pushes, &Progress::new(&|_, _| progress(0, all), most))?;
     let least = if folds < 3 { 4 } else { 3.max(folds) };
     if folds < 2 || prepared.len() < least {
         return Err(FitError::TooFewPushes {
