@@ -190,8 +190,8 @@ pub(crate) fn fit_prepared<'a>(
     Ok(fit.with_unsolved(&posterior, &means))
 }
 
-/// A parameter whose whitened coordinate came out at `z`, with a standard deviation; the interval is
-/// left open.
+/// A parameter whose whitened coordinate came out at `z`, with a standard deviation; the interval
+/// is left open.
 fn fitted(parameter: Parameter, prior: Prior, [z, std]: [f64; 2]) -> FittedParameter {
     let learnt = std < LEARNT;
     let value = prior.value(z);

@@ -37,7 +37,7 @@ pub enum Parameter {
     PhaseY,
     /// ln of the factor by which the feet's triangle is stretched along x and shrunk along y.
     StretchX,
-    /// The same along the diagonal of x and y.
+    /// ln of such a factor along the diagonal of x and y.
     StretchXy,
     /// Factor of the object's outline.
     OutlineScale,
@@ -168,8 +168,8 @@ impl Parameter {
         }
     }
 
-    /// The parameters that are free if nobody says which: μ_p, and all that `setup` leaves open of
-    /// the support.
+    /// The parameters that are free by default: μ_p, and all that `setup` leaves open of the
+    /// support.
     #[must_use]
     pub fn default_list(setup: &Setup) -> Vec<Self> {
         let all = [&[Self::MuP], SUPPORT].concat();

@@ -1,8 +1,8 @@
 //! The posterior by populations that cool from the prior: [`sample`], sequential Monte Carlo (Del
 //! Moral, Doucet & Jasra 2006) with moves of differential evolution (ter Braak 2006).
 //!
-//! Written here because the rollouts of half a population run side by side in vector lanes; samplers
-//! that are to be had ask for one density at a time.
+//! Written here because the rollouts of half a population run side by side in vector lanes;
+//! samplers that are to be had ask for one density at a time.
 
 use stickslip_filter::{Draw, Streams};
 
@@ -69,8 +69,8 @@ struct Populations<'a> {
 }
 
 /// Samples `posterior`: populations drawn from the prior cool to the power of the likelihood that
-/// their own drift deserves. Then they move until the second half of their ways agrees, by `settled`
-/// as split R̂, or for the most rounds. Also the number of vectors tried.
+/// their own drift deserves. Then they move until the second half of their ways agrees, by
+/// `settled` as split R̂, or for the most rounds. Also the number of vectors tried.
 pub(crate) fn sample(posterior: &Posterior<'_>, settled: f64, streams: Streams) -> (Chain, u64) {
     let mut populations = Populations::from_prior(posterior, streams);
     for stage in 1..=MOST_STAGES {

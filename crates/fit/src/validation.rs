@@ -36,8 +36,8 @@ pub struct CrossValidation {
     pub median_wmse_mm: [f64; 2],
     /// Share of final x, y and θ within the 90 % interval predicted for them.
     pub coverage_90: f64,
-    /// Gain of the posterior mean over the unfitted scene, in the final position error plus the WMSE
-    /// (mm): mean over the pushes, and its standard error.
+    /// Gain of the posterior mean over the unfitted scene, in the final position error plus the
+    /// WMSE (mm): mean over the pushes, and its standard error.
     pub gain_mm: [f64; 2],
     /// True if that mean is above 0. If it is not, a scene keeps its first guesses.
     pub pays: bool,
@@ -50,7 +50,8 @@ pub struct HeldOut {
     pub push: String,
     /// The fold that it is in, from 0.
     pub fold: usize,
-    /// Final position error of the unfitted scene, and of the mean prediction of the posterior (mm).
+    /// Final position error of the unfitted scene, and of the mean prediction of the posterior
+    /// (mm).
     pub final_mm: [f64; 2],
     /// WMSE over all rows of both (mm).
     pub wmse_mm: [f64; 2],
@@ -254,8 +255,8 @@ fn scores(push: &PreparedPush, setup: &Setup, estimate: &Estimate) -> Scores {
     score(estimate, &reference, &hidden, setup.virtual_radius())
 }
 
-/// Checks, axis by axis, whether the last measured pose lies in the intervals that the samples, each
-/// with its prediction, give for it.
+/// Checks, axis by axis, whether the last measured pose lies in the intervals that the samples,
+/// each with its prediction, give for it.
 fn covered(
     push: &PreparedPush,
     posterior: &Posterior<'_>,
