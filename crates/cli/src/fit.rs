@@ -342,6 +342,9 @@ fn parameters(fit: &Fit) -> Table {
 
 /// A number with four digits after its leading zeros.
 fn digits(value: f64) -> String {
+    if value == 0.0 {
+        return "0".to_owned();
+    }
     let places = 3.0 - value.abs().max(1e-9).log10().floor();
     format!("{value:.*}", places.clamp(0.0, 9.0) as usize)
 }

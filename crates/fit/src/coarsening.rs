@@ -11,7 +11,7 @@
 const COARSE: f64 = 6.0;
 
 /// Drift at which half of that counts (m/m).
-const HALF_DRIFT: f64 = 0.02;
+const HALF_DRIFT: f64 = 0.01;
 
 /// Power of the likelihood of so many pushes, whose predictions drift by `drift` (m/m).
 pub(crate) fn power(pushes: usize, drift: f64) -> f64 {
@@ -30,7 +30,7 @@ mod tests {
         assert!((worth(100, 0.0) - 100.0).abs() < 1e-12);
         assert!((worth(100_000, 1.0) - 6.0).abs() < 1e-2);
         assert!((worth(2, 1.0) - 1.5).abs() < 1e-2);
-        let worths = [0.005, 0.01, 0.02, 0.04].map(|drift| worth(20, drift));
+        let worths = [0.002, 0.005, 0.01, 0.02].map(|drift| worth(20, drift));
         assert!(worths.is_sorted_by(|a, b| a > b), "{worths:?}");
     }
 }

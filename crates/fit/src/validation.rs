@@ -30,13 +30,13 @@ pub struct CrossValidation {
     pub folds: usize,
     /// Each push.
     pub pushes: Vec<HeldOut>,
-    /// Medians over the pushes of the final position error (mm): unfitted scene, posterior mean.
+    /// Medians over the pushes of the final position error (mm): unfitted scene, posterior median.
     pub median_final_mm: [f64; 2],
-    /// Medians over the pushes of the WMSE over all rows (mm): unfitted scene, posterior mean.
+    /// Medians over the pushes of the WMSE over all rows (mm): unfitted scene, posterior median.
     pub median_wmse_mm: [f64; 2],
     /// Share of final x, y and θ within the 90 % interval predicted for them.
     pub coverage_90: f64,
-    /// Gain of the posterior mean over the unfitted scene, in the final position error plus the
+    /// Gain of the posterior median over the unfitted scene, in the final position error plus the
     /// WMSE (mm): mean over the pushes, and its standard error.
     pub gain_mm: [f64; 2],
     /// True if that mean is above 0. If it is not, a scene keeps its first guesses.
@@ -50,7 +50,7 @@ pub struct HeldOut {
     pub push: String,
     /// The fold that it is in, from 0.
     pub fold: usize,
-    /// Final position error of the unfitted scene, and of the mean prediction of the posterior
+    /// Final position error of the unfitted scene, and of the median prediction of the posterior
     /// (mm).
     pub final_mm: [f64; 2],
     /// WMSE over all rows of both (mm).
@@ -189,7 +189,7 @@ fn predict_held_out(
     fit.apply(&mut fitted)?;
     let mut estimate = nominal_estimate(push, unfitted)?;
     let of_unfitted = scores(push, unfitted, &estimate);
-    for (row, pose) in estimate.rows.iter_mut().zip(mean_poses(&predictions)) {
+    for (row, pose) in estimate.rows.iter_mut().zip(median_poses(&predictions)) {
         row.pose = Some(pose);
     }
     let of_fitted = scores(push, &fitted, &estimate);
@@ -221,25 +221,23 @@ fn nominal_estimate(push: &PreparedPush, setup: &Setup) -> Result<Estimate, FitE
     Ok(run.estimate)
 }
 
-/// Mean of several predictions, row by row.
-fn mean_poses(predictions: &[NominalPrediction]) -> Vec<Pose> {
-    let mean = |row: usize| {
+/// Median of several predictions, row by row and axis by axis. A push that may end in two ways has
+/// a mean where it never ends.
+fn median_poses(predictions: &[NominalPrediction]) -> Vec<Pose> {
+    let median = |row: usize| {
         let first = predictions[0].poses[row];
-        let mut sum = Pose::new(0.0, 0.0, 0.0);
-        for prediction in predictions {
-            let pose = prediction.poses[row];
-            sum.x += pose.x - first.x;
-            sum.y += pose.y - first.y;
-            sum.theta += wrapped(pose.theta - first.theta);
-        }
-        let share = 1.0 / predictions.len() as f64;
+        let of = |axis: &dyn Fn(Pose) -> f64| {
+            let poses = predictions.iter().map(|prediction| prediction.poses[row]);
+            let values: Vec<f64> = poses.map(axis).collect();
+            quantile(&values, 0.5).expect("there are predictions")
+        };
         Pose::new(
-            first.x + share * sum.x,
-            first.y + share * sum.y,
-            first.theta + share * sum.theta,
+            of(&|pose| pose.x),
+            of(&|pose| pose.y),
+            first.theta + of(&|pose| wrapped(pose.theta - first.theta)),
         )
     };
-    (0..predictions[0].poses.len()).map(mean).collect()
+    (0..predictions[0].poses.len()).map(median).collect()
 }
 
 /// Scores of an estimate against the measured poses, as `setup` understands them.

@@ -69,7 +69,7 @@ pub fn errors(validation: &CrossValidation) -> Block {
             },
             StripGroup {
                 name: "fitted".to_owned(),
-                lanes: vec![lane("mean of the posterior", Colour::BLUE, 1)],
+                lanes: vec![lane("median of the posterior", Colour::BLUE, 1)],
             },
         ],
         ..StripPlot::default()
