@@ -165,7 +165,7 @@ def test_a_fit_runs(shell, demo):
     for command in _commands("fit.md"):
         if "FOLDERS" not in command:
             shell(command)
-    assert tomllib.loads((shell.folder / "fitted/scene.toml").read_text())["uncertainty"]["mu_p"] > 0
+    assert tomllib.loads((shell.folder / "fitted/scene.toml").read_text())["pusher"]["friction"] > 0
 
 
 def test_a_bag_becomes_a_report(shell, demo):

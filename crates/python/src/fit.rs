@@ -47,7 +47,7 @@ pub fn fit<'py>(
     let pushes: Vec<Push> = pushes.into_iter().map(push_of).collect::<PyResult<_>>()?;
     let parameters = match pushes.first() {
         Some(first) => Parameter::list_or_default(&options.free, &first.setup),
-        None => Parameter::parse_list(&options.free),
+        None => Ok(Vec::new()), // too few pushes
     };
     let fit_options = FitOptions {
         parameters: parameters.map_err(refused)?,
