@@ -2,6 +2,9 @@
 
 use stickslip_lanes::{Lanes, sin_cos};
 
+/// Stretch below which sinh x / x is not computed as such: any small number will do.
+const LEAST_STRETCH: f64 = 1e-9;
+
 /// Affine image of the scene's feet, in the object's frame: r + c + A (p − r) of a foot at p, where
 /// r is their centre of friction. Three equal feet become any triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -66,6 +69,3 @@ impl<const W: usize> Support<Lanes<W>> {
         }
     }
 }
-
-/// Stretch below which sinh x / x is not computed as such: any small number will do.
-const LEAST_STRETCH: f64 = 1e-9;

@@ -127,24 +127,22 @@ pub(crate) fn prepare(
     pushes: &[Push],
     progress: &Progress<'_>,
 ) -> Result<(Vec<PreparedPush>, Vec<String>), FitError> {
-    let (mut ready, mut untouched) = (Vec::new(), Vec::new());
+    let (mut ready, mut left_out) = (Vec::new(), Vec::new());
     for push in pushes {
         progress.show();
         match PreparedPush::new(push.clone()) {
             Ok(push) => ready.push(push),
-            Err(error @ FitError::Untouched { .. }) => untouched.push(error),
+            Err(error @ FitError::Untouched { .. }) => left_out.push(error),
             Err(error) => return Err(error),
         }
     }
-    let mut untouched = untouched.into_iter();
-    match (ready.len(), untouched.next()) {
-        (2.., first) => {
-            let left_out = first.into_iter().chain(untouched);
-            Ok((ready, left_out.map(|push| push.to_string()).collect()))
-        }
-        (_, Some(first)) => Err(first),
-        (pushes, None) => Err(FitError::TooFewPushes { pushes, least: 2 }),
+    let (pushes, least) = (ready.len(), 2);
+    if pushes < least {
+        let too_few = FitError::TooFewPushes { pushes, least };
+        return Err(left_out.into_iter().next().unwrap_or(too_few));
     }
+    let left_out = left_out.iter().map(FitError::to_string);
+    Ok((ready, left_out.collect()))
 }
 
 impl FitOptions {
@@ -167,18 +165,14 @@ pub(crate) fn fit_prepared<'a>(
     let free = options.parameters.len();
     let means = chain.means();
     let samples = chain.thinned(KEPT_SAMPLES);
-    let whitened = |k: usize| [means[k], covariance[k][k].sqrt()];
     let parameters = posterior.parameters.iter().enumerate();
     let fit = Fit {
         pushes: pushes.len(),
         parameters: parameters
             .map(|(k, &(parameter, prior))| {
                 let values: Vec<f64> = samples.iter().map(|sample| sample[k]).collect();
-                let end = |q| prior.value(quantile(&values, q).expect("there are samples"));
-                FittedParameter {
-                    interval_90: [0.05, 0.95].map(end),
-                    ..fitted(parameter, prior, whitened(k))
-                }
+                let moments = [means[k], covariance[k][k].sqrt()];
+                fitted(parameter, prior, moments, &values)
             })
             .collect(),
         correlation: correlation(&covariance, free),
@@ -190,24 +184,28 @@ pub(crate) fn fit_prepared<'a>(
     Ok(fit.with_unsolved(&posterior, &means))
 }
 
-/// A parameter whose whitened coordinate came out at `z`, with a standard deviation; the interval
-/// is left open.
-fn fitted(parameter: Parameter, prior: Prior, [z, std]: [f64; 2]) -> FittedParameter {
-    let learnt = std < LEARNT;
-    let value = prior.value(z);
+/// A parameter, by mean, standard deviation and samples of its whitened coordinate.
+fn fitted(
+    parameter: Parameter,
+    prior: Prior,
+    [mean, std]: [f64; 2],
+    samples: &[f64],
+) -> FittedParameter {
+    let value = prior.value(mean);
+    let end = |q| prior.value(quantile(samples, q).expect("there are samples"));
     FittedParameter {
         name: parameter.name(),
         parameter,
         unit: parameter.unit(),
         value,
         std: prior.spread(value, std),
-        interval_90: [value; 2],
+        interval_90: [0.05, 0.95].map(end),
         prior,
         prior_value: prior.value(0.0),
         prior_std: prior.spread(prior.value(0.0), 1.0),
         std_ratio: std,
         determined: std < DETERMINED,
-        learnt,
+        learnt: std < LEARNT,
     }
 }
 

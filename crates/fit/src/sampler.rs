@@ -28,6 +28,9 @@ const WORTH: f64 = 0.5;
 /// Moves of every vector in a stage.
 const STAGE: usize = 10;
 
+/// Bisections of a power: a millionth is exact enough.
+const BISECTIONS: usize = 20;
+
 /// Most stages; the last one goes all the way.
 const MOST_STAGES: usize = 20;
 
@@ -213,9 +216,6 @@ impl<'a> Populations<'a> {
         accepted
     }
 }
-
-/// Bisections of a power: a millionth is exact enough.
-const BISECTIONS: usize = 20;
 
 /// Indices of a population of its size, drawn by weights (systematic resampling).
 fn systematic(weights: &[f64], offset: f64) -> impl Iterator<Item = usize> {
