@@ -21,6 +21,9 @@ class Estimate(dict[str, NDArray[np.float64]]):
     shows the :meth:`player`.
     """
 
+    # vars() has the facts of the run, and not the run itself
+    __slots__ = ("__dict__", "__weakref__", "_on")
+
     #: Reasons to doubt the estimate, each with the next step. They were issued as warnings too.
     warnings: tuple[str, ...]
     #: True for each friction parameter that the log identifies; empty for methods without friction.
