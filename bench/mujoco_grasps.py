@@ -1,10 +1,11 @@
 """Grasps in MuJoCo: 3-D physics, an object on twelve irregular feet, soft contacts, steps of 0.25 ms.
 
-    python3 bench/mujoco_grasps.py FIRST LAST OUT [--force | --jaw]
+    python3 bench/mujoco_grasps.py FIRST LAST OUT [--force] [--pusher-hz 240] [--drive 10] [--hide-pusher]
+    python3 bench/mujoco_grasps.py FIRST LAST OUT --jaw
 
 Needs `pip install mujoco numpy`; a grasp takes about 5 s. Each seed from FIRST to LAST - 1 gives a folder (scene.toml,
 log.csv, truth.csv, truth.json). Left out are seeds whose object touches no fixel, touches one before the pusher, or
-within 40 rows. The published sets are from MuJoCo 4.0.0; another version may change the motions.
+within 40 camera frames. The published sets are from MuJoCo 4.0.0; another version may change the motions.
 
 A pusher on a rail along x pushes the object into three disc fixels. Its drive has a limited force and a ripple of
 3 %. scene.toml has exact mass, inertia and shapes; friction and support tripod are guesses. All numbers are SI, in the
@@ -14,12 +15,17 @@ With `--jaw` there are no fixels. Two fingers on one spindle close along x about
 spindle's force is limited: the forces on both fingers add up to it. Left out are seeds whose object touches no finger.
 
 - log.csv: camera noise 0.3 mm and 0.3 degrees, pusher noise 0.1 mm, 2 % repeated rows; touch means more than 0.05 N
-- forces: means over the interval before a row, whose 133 steps (33.25 ms) count as 1/30 s
+- forces: means over the interval before a row; at 30 Hz its 133 steps (33.25 ms) count as 1/30 s; at 240 Hz 17 steps
+  (4.25 ms) as 1/240 s
 - `--force`: adds the pusher's force on the object to the log, with noise of 0.03 N and a bias of 0.05 N (one sigma) per
   axis, and the table [wrench] to the scene
+- `--pusher-hz HZ`: rows at HZ, a multiple of 30, with a camera pose in every (HZ / 30)th; above 30 no row is repeated
+- `--drive FACTOR`: multiplies the stall force of the drive
+- `--hide-pusher`: no pusher poses for 0.4 s, from 0.1 s after the first touch of a fixel
 """
 
 import argparse
+import io
 import json
 import math
 from pathlib import Path
@@ -30,8 +36,7 @@ import numpy as np
 
 GRAVITY = 9.81
 TIME_STEP = 0.00025  # s
-RATE, FRAMES = 30, 600
-STEPS = round(1 / RATE / TIME_STEP)
+CAMERA_HZ, SECONDS = 30, 20
 FEET = 12
 HEIGHT = 0.012  # of the object, m
 START = -0.03  # x of the object, m
@@ -43,7 +48,7 @@ TOUCH = 0.05  # N
 FORCE_STD, FORCE_BIAS = 0.03, 0.05  # N
 TRUTH = "time,x,y,theta,vx,vy,omega,pusher_x,pusher_y,force_pusher,force_1,force_2,force_3"
 LOG = "time,object_x,object_y,object_theta,pusher_x,pusher_y,pusher_theta,tactile_1,tactile_2,tactile_3"
-JAW_FRAMES = 240
+JAW_SECONDS = 8
 JAW_TRUTH = "time,x,y,theta,vx,vy,omega,pusher_x,pusher_y,force_pusher,force_1"
 JAW_LOG = (
     "time,object_x,object_y,object_theta,pusher_x,pusher_y,pusher_theta,finger_1_x,finger_1_y,finger_1_theta"
@@ -154,7 +159,7 @@ def draw_jaw(draw, seed):
     return grasp
 
 
-def draw_grasp(draw, seed):
+def draw_grasp(draw, seed, drive):
     """Draws an experiment. The order of the draws fixes the published sets; `parts` and `feet` are in O."""
     grasp, corners = draw_object(draw, seed)
     grasp.fixels, grasp.fixel_radius = draw_fixels(draw, grasp.radius)
@@ -166,7 +171,7 @@ def draw_grasp(draw, seed):
     lead, share = (PUSHER_RADIUS, 0.25) if grasp.pusher == "disc" else (BAR, 0.3)
     grasp.pusher_y = grasp.y + draw.uniform(-0.35, 0.35) * grasp.radius * share
     grasp.pusher_x = START + reach_x.min() - lead - 0.06 * draw.uniform(0.7, 1.1) - 0.002
-    grasp.stall = draw.choice([10.0, 20.0]) * grasp.mass * GRAVITY * grasp.mu_s
+    grasp.stall = drive * draw.choice([10.0, 20.0]) * grasp.mass * GRAVITY * grasp.mu_s
     draw.uniform()  # unused
     depth = 2 * min(abs(reach_x).max(), grasp.radius) * draw.uniform(0.35, 0.7)
     grasp.travel = grasp.fixels[0][0] - grasp.fixel_radius - lead - depth - grasp.pusher_x
@@ -235,16 +240,17 @@ def add_forces(model, data, bodies, sizes, push):
                     push += sign * (np.array(contact.frame).reshape(3, 3).T @ force[:3])[:2]
 
 
-def simulate(grasp):
-    """Rows of truth.csv, and the mean force of the pusher on the object (n, 2) in W, N.
+def simulate(grasp, rate, seconds):
+    """Rows of truth.csv at a rate in Hz, and the mean force of the pusher on the object (n, 2) in W, N.
 
     Also the way of each finger along x (n, fingers).
     """
+    steps = round(1 / rate / TIME_STEP)
     model = mujoco.MjModel.from_xml_string(model_text(grasp))
     data = mujoco.MjData(model)
     names = [f"finger{k}" for k in range(len(grasp.fingers))] + [f"fixel{k + 1}" for k in range(len(grasp.fixels))]
     bodies = {model.geom(name).id: k for k, name in enumerate(names)}
-    rails, frames = len(grasp.fingers), JAW_FRAMES if len(grasp.fingers) > 1 else FRAMES
+    rails = len(grasp.fingers)
     free = data.qpos[rails:]
     signs = [sign for _, _, sign in grasp.fingers]
     for _ in range(2000):  # the object settles
@@ -252,11 +258,11 @@ def simulate(grasp):
     start = data.time
     theta = 2 * math.atan2(free[6], free[3])
     rows, pushes, ways = [], [], []
-    for frame in range(frames + 1):
+    for frame in range(seconds * rate + 1):
         sizes, push = np.zeros(len(names)), np.zeros(2)
         if frame > 0:
             travels = data.qpos[0] < grasp.travel
-            for _ in range(STEPS):
+            for _ in range(steps):
                 ripple = 1 + 0.03 * math.sin(7 * data.time)
                 data.ctrl[0] = grasp.speed * ripple if travels and data.time - start > 0.5 else 0
                 mujoco.mj_step(model, data)
@@ -266,19 +272,20 @@ def simulate(grasp):
         speed = data.qvel[rails:]
         x, y, sign = grasp.fingers[0]
         place = (x + sign * data.qpos[0], y)
-        rows.append([frame / RATE, *free[:2], theta, *speed[:2], speed[5], *place, *(sizes / STEPS)])
-        pushes.append(push / STEPS)
+        rows.append([frame / rate, *free[:2], theta, *speed[:2], speed[5], *place, *(sizes / steps)])
+        pushes.append(push / steps)
         ways.append(signs * data.qpos[:rails])
     return np.array(rows), np.array(pushes), np.array(ways)
 
 
-def sense(draw, truth):
-    """Camera poses (n, 3), pusher positions (n, 2) and touch (n, 3) as logged."""
+def sense(draw, truth, every):
+    """Camera poses (n, 3) in each `every`th row, pusher positions (n, 2) and touch (n, 3) as logged."""
     rows = len(truth)
     camera = truth[:, 1:4] + draw.normal(size=(rows, 3)) * CAMERA_STD
     pusher = truth[:, 7:9] + draw.normal(size=(rows, 2)) * PUSHER_STD
+    camera[np.arange(rows) % every > 0] = np.nan
     for k in range(1, rows):
-        if draw.random() < 0.02:
+        if every == 1 and draw.random() < 0.02:
             camera[k], pusher[k] = camera[k - 1], pusher[k - 1]
     return camera, pusher, (truth[:, 10:] > TOUCH).astype(int)
 
@@ -339,15 +346,17 @@ def write(folder, grasp, facts, tables, force=False):
     (folder / "scene.toml").write_text(scene_text(grasp, force))
     (folder / "truth.json").write_text(json.dumps(facts, indent=1))
     for name, (header, formats, columns) in tables.items():
-        np.savetxt(folder / name, np.column_stack(columns), formats, ",", header=header, comments="")
+        text = io.StringIO()
+        np.savetxt(text, np.column_stack(columns), formats, ",", header=header, comments="")
+        (folder / name).write_text(text.getvalue().replace("nan", ""))
 
 
 def record_jaw(seed, out):
     """Draws, simulates and writes the experiment of one seed with two fingers."""
     draw = np.random.default_rng(seed)
     grasp = draw_jaw(draw, seed)
-    truth, _, ways = simulate(grasp)
-    camera, pusher, _ = sense(draw, truth)
+    truth, _, ways = simulate(grasp, CAMERA_HZ, JAW_SECONDS)
+    camera, pusher, _ = sense(draw, truth, 1)
     touches = [int(np.argmax(force > 0.02)) if (force > 0.02).any() else None for force in truth.T[9:]]
     first = min((row for row in touches if row is not None), default=0)
     if first < 10 or not np.isfinite(truth).all():
@@ -367,30 +376,34 @@ def record_jaw(seed, out):
     write(out / f"{kind}-{grasp.shape}-{grasp.pusher}-{seed}", grasp, facts, tables)
 
 
-def record(seed, out, force):
+def record(seed, given):
     """Draws, simulates and writes the experiment of one seed."""
+    every = given.pusher_hz // CAMERA_HZ
     draw = np.random.default_rng(seed)
-    grasp = draw_grasp(draw, seed)
-    truth, push, _ = simulate(grasp)
-    camera, pusher, touch = sense(draw, truth)
+    grasp = draw_grasp(draw, seed, given.drive)
+    truth, push, _ = simulate(grasp, given.pusher_hz, SECONDS)
+    camera, pusher, touch = sense(draw, truth, every)
     pushed = int(np.argmax(truth[:, 9] > 0.02))
     touches = [int(np.argmax(column)) if column.any() else None for column in touch.T]
     first = min((row for row in touches if row is not None), default=0)
-    if first < 40 or first <= pushed or not np.isfinite(truth).all():
+    if first < 40 * every or first <= pushed or not np.isfinite(truth).all():
         return
 
     moved = truth[-1, 1:4] - truth[first, 1:4]
     kind = "slide" if 1e3 * np.hypot(*moved[:2]) > 3 or abs(np.degrees(moved[2])) > 5 else "stop"
     facts = {"source": "MuJoCo 4.0.0, 3-D, 12 irregular feet, 0.25 ms"}
     facts |= {key: getattr(grasp, key) for key in ("shape", "pusher", "mu_s", "mu_p", "mu_f")}
-    facts |= {"first_pusher_contact": pushed, "first_fixel_contacts": touches, "occlude_from": first - 5}
-    log = [truth[:, 0], camera, pusher, np.zeros(len(truth)), touch]
-    header, formats = LOG, ["%.6f"] * 6 + ["%d"] * 4
-    if force:
+    facts |= {"first_pusher_contact": pushed, "first_fixel_contacts": touches, "occlude_from": first - 5 * every}
+    place = np.column_stack([pusher, np.zeros(len(truth))])
+    if given.hide_pusher:
+        place[first + 3 * every : first + 15 * every] = np.nan
+    log = [truth[:, 0], camera, place, touch]
+    header, formats = LOG, ["%.6f"] * 6 + ["%.0f"] + ["%d"] * 3
+    if given.force:
         log.append(sense_force(push, seed))
         header, formats = LOG + FORCE, [*formats, "%.4f", "%.4f"]
     tables = {"truth.csv": (TRUTH, "%.7g", [truth]), "log.csv": (header, formats, log)}
-    write(out / f"{kind}-{grasp.shape}-{grasp.pusher}-{seed}", grasp, facts, tables, force)
+    write(given.out / f"{kind}-{grasp.shape}-{grasp.pusher}-{seed}", grasp, facts, tables, given.force)
 
 
 def main():
@@ -398,15 +411,19 @@ def main():
     parser.add_argument("first", type=int)
     parser.add_argument("last", type=int)
     parser.add_argument("out", type=Path)
-    kind = parser.add_mutually_exclusive_group()
-    kind.add_argument("--force", action="store_true")
-    kind.add_argument("--jaw", action="store_true")
+    parser.add_argument("--force", action="store_true")
+    parser.add_argument("--pusher-hz", type=int, default=CAMERA_HZ)
+    parser.add_argument("--drive", type=float, default=1.0)
+    parser.add_argument("--hide-pusher", action="store_true")
+    parser.add_argument("--jaw", action="store_true")
     given = parser.parse_args()
+    if given.pusher_hz < CAMERA_HZ or given.pusher_hz % CAMERA_HZ:
+        parser.error(f"--pusher-hz is {given.pusher_hz}; it must be a multiple of {CAMERA_HZ}, such as 240")
     for seed in range(given.first, given.last):
         if given.jaw:
             record_jaw(seed, given.out)
         else:
-            record(seed, given.out, given.force)
+            record(seed, given)
 
 
 if __name__ == "__main__":

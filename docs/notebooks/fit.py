@@ -51,8 +51,8 @@ for name in fit.names:
     )
 
 # %% [markdown]
-# No push touches a fixel. The friction at fixels therefore keeps its nominal value, and the fit
-# reports it as not identifiable.
+# No push touches a fixel. The friction at fixels therefore stays about its nominal value, and the
+# fit reports it as not identifiable.
 
 # %%
 known = {"mu_p": truth["mu_p"], "tripod_radius": truth["d_tri"]}

@@ -11,6 +11,8 @@ import os
 import re
 import subprocess
 import sys
+import threading
+import time
 from collections.abc import Callable
 from pathlib import Path
 
@@ -26,13 +28,13 @@ GROUND = (252, 251, 248)
 Cut = tuple[str, int, str, int]
 
 
-def cuts(address: str, *wanted: Cut, scale: float = 1) -> list[Image.Image]:
-    """Returns parts of a page that is 1280 pixels wide, with 12 pixels around them."""
+def cuts(address: str, *wanted: Cut, scale: float = 1, wait: int = 1500) -> list[Image.Image]:
+    """Returns parts of a page that is 1280 pixels wide, ``wait`` ms old, with 12 pixels around them."""
     with sync_playwright() as play:
         browser = play.chromium.launch(executable_path=os.environ.get("CHROMIUM"), args=["--no-sandbox"])
         page = browser.new_page(viewport={"width": 1280, "height": 900}, device_scale_factor=scale)
         page.goto(address)
-        page.wait_for_timeout(1500)
+        page.wait_for_timeout(wait)
         images = []
         for first, at, last, end in wanted:
             boxes = [page.locator(selector).nth(k).bounding_box() for selector, k in ((first, at), (last, end))]
@@ -66,6 +68,11 @@ def report() -> None:
     save(*cuts(f"file://{WORK}/turn/report.html", (".player", 0, ".fates", 0)), "report")
 
 
+def compare() -> None:
+    """Errors of twenty rigs, and each method against the particle filter."""
+    save(*cuts(f"file://{WORK}/compare.html", ("figure", 0, "figure", 1)), "compare")
+
+
 def bag_report() -> None:
     """Player, verdicts and friction of the bag's report."""
     save(below(*cuts(f"file://{WORK}/report.html", (".player", 0, ".fates", 0), ("figure", 5, "figure", 5))), "bag-report")
@@ -93,23 +100,31 @@ def bifurcation() -> None:
 
 
 def live_page() -> None:
-    """The live page after 120 rows of the demo, with the camera off from row 60 on."""
+    """The live page while rows of the demo come, with the camera off from row 60 on."""
     with (DEMO / "log.csv").open() as file:
-        rows = [{key: float(value) for key, value in row.items() if value} for row in csv.DictReader(file)][:120]
+        rows = [{key: float(value) for key, value in row.items() if value} for row in csv.DictReader(file)]
     command = ["stickslip", "live", "my/scene.toml", "--page"]
     with subprocess.Popen(command, cwd=WORK, stdin=-1, stdout=-1, stderr=-1, text=True) as live:
         address = next(found for line in live.stderr if (found := re.search(r"http://\S+", line)))
-        for index, row in enumerate(rows):
-            seen = {key: value for key, value in row.items() if index < 60 or not key.startswith("object")}
-            live.stdin.write(json.dumps(seen) + "\n")
-            live.stdin.flush()
-            live.stdout.readline()
-        save(*cuts(address.group(0), (".player", 0, ".player", 0)), "live-page")
+
+        def feed() -> None:
+            for index, row in enumerate(rows):
+                seen = {key: value for key, value in row.items() if index < 60 or not key.startswith("object")}
+                live.stdin.write(json.dumps(seen) + "\n")
+                live.stdin.flush()
+                live.stdout.readline()
+                time.sleep(1 / 30)
+
+        source = threading.Thread(target=feed)
+        source.start()
+        save(*cuts(address.group(0), (".player", 0, ".player", 0), wait=3000), "live-page")
+        source.join()
         live.communicate()
 
 
 PICTURES: dict[str, Callable[[], None]] = {
     "report": report,
+    "compare": compare,
     "bag-report": bag_report,
     "fit-report": fit_report,
     "bifurcation": bifurcation,

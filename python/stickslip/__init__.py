@@ -15,13 +15,15 @@ Invalid input raises :class:`Error`. Reasons to doubt a result are issued as :cl
 
 from stickslip._check import Finding, check
 from stickslip._columns import Columns, Log
-from stickslip._compare import compare
+from stickslip._compare import Comparison, compare
 from stickslip._estimate import Estimate
 from stickslip._files import Topics, info, load_log, load_scene, load_truth
-from stickslip._filter import FilterOptions, Progress, filter, particles, samples
+from stickslip._filter import filter, particles, samples
 from stickslip._fit import Fit, fit
 from stickslip._native import Error, Scene, Warning, __version__
+from stickslip._options import FilterOptions, Progress
 from stickslip._outline import Outlines, Polygons, outlines
+from stickslip._page import Page, report
 from stickslip._rollout import Rollout, rollout
 from stickslip._score import score
 from stickslip._simulate import Simulation, simulate
@@ -29,6 +31,7 @@ from stickslip._tracker import Row, Tracker, rows
 
 __all__ = [
     "Columns",
+    "Comparison",
     "Error",
     "Estimate",
     "FilterOptions",
@@ -36,6 +39,7 @@ __all__ = [
     "Fit",
     "Log",
     "Outlines",
+    "Page",
     "Polygons",
     "Progress",
     "Rollout",
@@ -56,6 +60,7 @@ __all__ = [
     "load_truth",
     "outlines",
     "particles",
+    "report",
     "rollout",
     "rows",
     "samples",

@@ -7,13 +7,21 @@ import os
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Unpack
+from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from stickslip import _native
 from stickslip._columns import Columns
 from stickslip._files import Topics, experiments, load_log, load_scene, load_truth, path_of
-from stickslip._filter import FilterOptions, filter
+from stickslip._filter import filter
 from stickslip._native import Error, Scene
+from stickslip._options import DEFAULTS, FilterOptions, with_options
+from stickslip._page import Page
 from stickslip._score import score
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
 
 #: Options of each variant: method, use of tactile readings, and ``camera_on`` for no occlusion.
 _VARIANTS: dict[str, dict[str, Any]] = {
@@ -26,6 +34,22 @@ _VARIANTS: dict[str, dict[str, Any]] = {
 }
 
 
+class Comparison(list[dict[str, Any]]):
+    """Runs of :func:`compare`, a dict each. A notebook shows the :meth:`page`."""
+
+    def __init__(self, rows: Iterable[dict[str, Any]], particles: int) -> None:
+        super().__init__(rows)
+        self._particles = particles
+
+    def page(self) -> Page:
+        """Returns the page of ``stickslip compare --report``, without players."""
+        return Page(_native.comparison_page(self, self._particles))
+
+    def _repr_html_(self) -> str:
+        return self.page()._repr_html_()
+
+
+@with_options
 def compare(
     folders: Iterable[str | os.PathLike[str]],
     *,
@@ -35,7 +59,7 @@ def compare(
     scene: Mapping[str, Any] | None = None,
     topics: Topics | None = None,
     **options: Unpack[FilterOptions],
-) -> list[dict[str, Any]]:
+) -> Comparison:
     """Runs each variant on each experiment folder and scores it.
 
     ``folders``: experiment folders, or folders that contain such folders. ``seeds``: number of
@@ -50,8 +74,9 @@ def compare(
     runs and all runs.
 
     Returns a dict per run: ``folder``, ``variant``, ``seed``, the scores of
-    :func:`stickslip.score`, and ``warnings``, ``observed``, ``log_evidence`` and
-    ``collapses`` of :class:`stickslip.Estimate`.
+    :func:`stickslip.score`, ``unsolved`` (steps of particles), and ``warnings``, ``observed``,
+    ``log_evidence`` and ``collapses`` of :class:`stickslip.Estimate`. ``page()`` of the whole is
+    the page of ``stickslip compare --report``.
     """
     chosen = list(variants)
     unknown = sorted(set(chosen) - set(_VARIANTS))
@@ -76,7 +101,7 @@ def compare(
             raise Error(f"{experiment.folder}: {error}") from error
         if progress is not None:
             progress(done + 1, len(runs))
-    return rows
+    return Comparison(rows, options.get("particles", DEFAULTS["particles"]))
 
 
 @dataclass(frozen=True)
@@ -142,4 +167,5 @@ class _Experiment:
             "observed": estimate.observed,
             "log_evidence": estimate.log_evidence,
             "collapses": estimate.collapses,
+            "unsolved": int(np.nansum(estimate["unsolved"])),
         }

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import operator
 import os
-from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Literal, TypeAlias, TypedDict, Unpack
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,53 +15,20 @@ from stickslip._columns import Columns, Log
 from stickslip._estimate import Estimate
 from stickslip._files import log_of, scene_of
 from stickslip._native import Error, Scene
+from stickslip._options import FilterOptions, arguments, with_options
+from stickslip._page import run_of
 
 if TYPE_CHECKING:
-    from stickslip._native import RunArguments
+    from typing_extensions import Unpack
 
 
-#: Function of what is done and of the total. An exception in it ends the call.
-Progress: TypeAlias = Callable[[int, int], object]
-
-
-class FilterOptions(TypedDict, total=False):
-    """Options of a run on a log, with the defaults of the program."""
-
-    #: ``particle`` (default), ``kalman`` (constant velocity, no contact), ``kalman-stops``
-    #: (``kalman``, at rest from the first touch in an occlusion), ``with-pusher`` (glued to the
-    #: pusher in an occlusion), ``extended-kalman`` (contact dynamics, no touch) or ``nominal``
-    #: (simulation from the first pose).
-    method: Literal["particle", "kalman", "kalman-stops", "with-pusher", "extended-kalman", "nominal"]
-    #: Model of the particle filter: ``robust`` (default) or ``paper`` (as published).
-    model: Literal["robust", "paper"]
-    #: Number of particles, 500 by default.
-    particles: int
-    #: Seed of all random numbers, 0 by default.
-    seed: int
-    #: True (default) to use tactile readings.
-    tactile: bool
-    #: True to track the pusher without later rows, as live; False by default.
-    causal: bool
-    #: Number of substeps from row to row; None: by the length of the step.
-    substeps: int | None
-    #: Rows with a hidden object pose: ``60`` (from row 60 on) or ``(60, 90)`` (90 excluded).
-    occlude: int | tuple[int, int | None] | None
-    #: Length of an occlusion about the middle of the log (s).
-    occlude_middle: float | None
-    #: True to run also if units, frames or columns are found to be wrong; False by default.
-    force: bool
-    #: Number of threads; None: as many as help. Results do not depend on it.
-    threads: int | None
-    #: Called with the finished rows and all rows, some twenty times a second, and at the end.
-    progress: Progress | None
-
-
+@with_options
 def filter(log: Log, scene: Scene | str | os.PathLike[str], **options: Unpack[FilterOptions]) -> Estimate:
     """Tracks the object of a log.
 
     ``log``: path of a log (see :func:`stickslip.load_log`), dict of columns, or data frame, with
     the columns of ``log.csv``. NaN, None and masked values are missing measurements. ``scene``: a
-    scene, or the path of its file. ``options``: see :class:`FilterOptions`.
+    scene, or the path of its file.
 
     Reasons to doubt the estimate are issued as :class:`stickslip.Warning`, as the program prints
     them, and kept as ``warnings``. Ctrl-C ends the call.
@@ -89,10 +56,12 @@ def filter(log: Log, scene: Scene | str | os.PathLike[str], **options: Unpack[Fi
     if units, frames or columns are found to be wrong.
     """
     known = scene_of(scene)
-    columns, facts = _native.filter(log_of(log, known), known, arguments(options), options.get("progress"))
-    return Estimate(columns, facts)
+    table = log_of(log, known)
+    columns, facts = _native.filter(table, known, arguments(options), options.get("progress"))
+    return Estimate(columns, facts, run_of(table, known, options))
 
 
+@with_options
 def particles(
     log: Log,
     scene: Scene | str | os.PathLike[str],
@@ -118,6 +87,7 @@ def particles(
     return {"row": kept.astype(np.float64)} | {name: column.reshape(shape) for name, column in columns.items()}
 
 
+@with_options
 def samples(
     log: Log,
     scene: Scene | str | os.PathLike[str],
@@ -185,41 +155,3 @@ def _places(rows: Sequence[int], log: Columns) -> list[int]:
     if wrong:
         raise Error(f"rows has {wrong[0]}; the log's rows go from 0 to {count - 1}")
     return places
-
-
-def arguments(options: FilterOptions) -> RunArguments:
-    """Returns the options with their defaults, as the library takes them."""
-    unknown = sorted(set(options) - set(FilterOptions.__annotations__))
-    if "mode" in unknown:
-        raise Error("option `mode` is called `model`: `robust` (formerly contact) or `paper`")
-    if unknown:
-        known = ", ".join(FilterOptions.__annotations__)
-        raise Error(f"there is no option `{unknown[0]}`; there are {known}")
-    return {
-        "method": options.get("method", "particle"),
-        "model": options.get("model", "robust"),
-        "particles": options.get("particles", 500),
-        "seed": options.get("seed", 0),
-        "tactile": options.get("tactile", True),
-        "causal": options.get("causal", False),
-        "substeps": options.get("substeps"),
-        "occlude": _rows(options.get("occlude")),
-        "occlude_middle": options.get("occlude_middle"),
-        "force": options.get("force", False),
-        "threads": options.get("threads"),
-    }
-
-
-def _rows(occlude: int | tuple[int, int | None] | None) -> tuple[int, int | None] | None:
-    """Returns the first hidden row and the first visible one after it."""
-    if occlude is None:
-        return None
-    rule = f"occlude is {occlude!r}; give the first hidden row, from 0, or that and the first visible one after it"
-    try:
-        first, last = occlude if isinstance(occlude, tuple) else (occlude, None)
-        first, last = operator.index(first), None if last is None else operator.index(last)
-    except (TypeError, ValueError) as error:
-        raise Error(rule) from error
-    if first < 0 or (last is not None and last <= first):
-        raise Error(rule)
-    return first, last

@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from stickslip import _native
 from stickslip._columns import Columns, Log
 from stickslip._files import Topics, experiments, load_log, load_scene, log_of, scene_of
-from stickslip._filter import Progress
 from stickslip._native import Error, Scene
+from stickslip._options import Progress
 from stickslip._simulate import Simulation
 
 #: A push: its experiment folder, a simulation, or a scene and a log.
@@ -30,11 +30,9 @@ class Fit:
     #: Names of the parameters, in the order of all arrays; ``pusher_offset`` and the like are two,
     #: x and y.
     names: tuple[str, ...]
-    #: Values that predict best; the nominal value if the posterior's spread exceeds 0.8 of the
-    #: prior's.
+    #: Posterior means, of the logarithm for positive numbers.
     values: dict[str, float]
-    #: Their standard deviations, in the same unit (m, s, or none); the prior's if nothing was
-    #: learnt.
+    #: Standard deviations, in the same unit (m, s, or none).
     stds: dict[str, float]
     #: Nominal values, the medians of the priors.
     prior_values: dict[str, float]
@@ -52,9 +50,8 @@ class Fit:
     #: First push's scene with the learnt values and spreads, or with the nominal values if
     #: ``cross_validation["pays"]`` is false; ``scene.text`` is the file.
     scene: Scene
-    #: All numbers, with the names of ``fit.json``; ``["parameters"][k]["constant"]`` is the
-    #: constant of material or support that the k-th value imitates, with its 90 % interval, or
-    #: None.
+    #: All numbers, with the names of ``fit.json``; ``["parameters"][k]["interval_90"]`` has the ends
+    #: of the k-th 90 % interval.
     result: dict[str, Any]
     #: Reasons to doubt the fit, each with the push that it is about.
     warnings: tuple[str, ...]
@@ -62,7 +59,7 @@ class Fit:
 
 def fit(
     pushes: str | os.PathLike[str] | Iterable[Push],
-    free: Sequence[str] = ("mu_p", "tripod_radius"),
+    free: Sequence[str] = (),
     *,
     seed: int = 0,
     folds: int | None = None,
@@ -76,8 +73,9 @@ def fit(
     ``pushes``: at least two pushes, as experiment folders (``scene.toml``, ``log.csv`` or
     ``log.mcap``), folders of such folders, results of :func:`stickslip.simulate`, or pairs of a
     scene and a log. All scenes must have the same first guess. ``free``: parameters to learn, of
-    ``mu_s``, ``mu_p``, ``mu_f``, ``tripod_radius``, ``centre_of_friction``, ``outline_scale``,
-    ``outline_offset``, ``pusher_offset``, ``latency``. ``folds``: number of parts in the
+    ``mu_s``, ``mu_p``, ``mu_f``, ``tripod_radius``, ``centre_of_friction``, ``support``,
+    ``outline_scale``, ``outline_offset``, ``pusher_offset``, ``latency``; none: ``mu_p`` and all
+    that the first scene leaves open of ``support``. ``folds``: number of parts in the
     cross-validation, each predicted by a fit to the others; 0: none; None: 4, or 2 for fewer than 8
     pushes, or 0 for fewer than 4. ``topics``: see :func:`stickslip.load_log`. ``progress``: gets the
     vectors of parameters tried and an upper limit of them, at which it ends.

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stickslip._native import Scene
+from stickslip._toml import tomllib
 
 #: Number of corners of the polygon that approximates a disc or an ellipse.
 _CORNERS = 48

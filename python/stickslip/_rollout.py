@@ -12,8 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 from stickslip import _native
 from stickslip._columns import numbers
 from stickslip._files import scene_of
-from stickslip._filter import Progress
 from stickslip._native import Error, Scene
+from stickslip._options import Progress
 
 #: Names of the friction parameters, in the order of arrays.
 FRICTION = ("mu_s", "mu_p", "mu_f", "d_tri")

@@ -9,8 +9,8 @@ from typing import Any
 from stickslip import _native
 from stickslip._columns import Log, columns_of
 from stickslip._files import load_truth, log_of, scene_of
-from stickslip._filter import FilterOptions, arguments
 from stickslip._native import Scene
+from stickslip._options import FilterOptions, arguments
 
 
 def score(
@@ -39,6 +39,8 @@ def score(
     - ``wmse_moving_mm``: pose RMSE from first contact to rest
     - ``spread_occluded_mm``: expected ``wmse_occluded_mm`` if the standard deviations are correct
     - ``final_error_mm`` and ``final_error_deg``: errors at the end
+    - ``covered_90``: share of the 90 % intervals of x, y and theta that cover the reference, and
+      ``crps_mm``: the score of the whole belief (CRPS), over hidden rows if there are some
     """
     if isinstance(truth, str | os.PathLike):
         truth = load_truth(truth)

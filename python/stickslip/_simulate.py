@@ -14,8 +14,8 @@ import numpy as np
 from stickslip import _native
 from stickslip._columns import Columns
 from stickslip._files import scene_of
-from stickslip._filter import Progress
 from stickslip._native import Error, Scene
+from stickslip._options import Progress
 from stickslip._warnings import warn
 
 

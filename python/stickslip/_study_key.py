@@ -72,5 +72,8 @@ def _files(folder: Path, scene_name: str) -> list[Path]:
 
 
 def _digest(file: Path) -> str:
+    digest = hashlib.sha256()
     with file.open("rb") as bytes_:
-        return hashlib.file_digest(bytes_, "sha256").hexdigest()
+        while part := bytes_.read(1 << 20):
+            digest.update(part)
+    return digest.hexdigest()

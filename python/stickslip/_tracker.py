@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from typing import Any, Literal, TypedDict
 
 import numpy as np
+from numpy.typing import NDArray
 
 from stickslip import _native
 from stickslip._columns import Log, is_missing, numbers
@@ -122,6 +123,20 @@ class Tracker:
     def estimate(self) -> dict[str, float]:
         """Estimate at the latest row."""
         return self._tracker.estimate()
+
+    def particles(self) -> dict[str, NDArray[np.float64]]:
+        """Returns the particles after the latest row, an array (N,) each; (0,) before the first pose.
+
+        ``weight`` (they sum to 1), ``x``, ``y`` (m), ``theta`` (rad), ``mu_s``, ``mu_p``, ``mu_f``,
+        ``d_tri`` (m).
+        """
+        return self._tracker.particles()
+
+    def copy(self) -> Tracker:
+        """Returns a tracker that goes on by itself: equal rows give it equal estimates."""
+        twin = object.__new__(type(self))
+        twin._tracker = self._tracker.copy()
+        return twin
 
     @property
     def warnings(self) -> tuple[str, ...]:

@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stickslip._columns import numbers
-from stickslip._filter import Progress
 from stickslip._native import Error, Scene
+from stickslip._options import Progress
 from stickslip._outline import outlines
 from stickslip._rollout import FRICTION, rollout
 

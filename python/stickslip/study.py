@@ -27,8 +27,8 @@ from pathlib import Path
 from typing import Any
 
 from stickslip._compare import compare
-from stickslip._filter import Progress
 from stickslip._native import Error
+from stickslip._options import Progress
 from stickslip._study_key import Task, keys
 from stickslip._study_statistics import flat, medians, paired
 

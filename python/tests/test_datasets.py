@@ -1,6 +1,8 @@
 """Importers give back a motion that is known, whatever clock, unit and frame a file has it in."""
 
+import dataclasses
 import json
+import shutil
 import subprocess
 
 import h5py
@@ -9,6 +11,7 @@ import pytest
 
 import stickslip
 from stickslip import datasets
+from stickslip.datasets import _zhou
 
 SCENE = datasets.scene_text("{ disc = { radius = 0.03 } }", mass=0.5, inertia=2.1e-4, pusher_radius=0.005)
 
@@ -117,6 +120,58 @@ def test_two_finger_runs_are_cut_where_the_hand_is_lifted(tmp_path):
     assert len(stickslip.load_log(one / "log.csv")["time"]) == 49
     pushes = datasets.import_two_finger(tmp_path / "log.txt", SCENE, tmp_path / "push", single_pushes=True)
     assert [len(stickslip.load_log(push / "log.csv")["time"]) for push in pushes] == [49, 50]
+
+
+@pytest.fixture
+def published(tmp_path):
+    """A repository with a run of each rectangle and triangle of the published set, and its commit."""
+    repository = tmp_path / "repository"
+    motion = _motion(np.arange(0, 2, 0.04)) * [1e3, 1e3, 1.0]
+    rows = np.column_stack([np.arange(0, 2, 0.04), motion, motion, np.ones(50)])
+    for folder, runs in _zhou._RUNS.items():
+        (repository / "logs" / folder).mkdir(parents=True)
+        for time in runs:
+            np.savetxt(repository / "logs" / folder / f"log2017-{time}.txt", rows, delimiter=",", fmt="%.12g")
+    (repository / "other").mkdir()
+    (repository / "other/large.bin").write_bytes(bytes(1000))
+    identity = ["-c", "user.name=a", "-c", "user.email=a@example.org"]
+    settings = [["uploadpack.allowAnySHA1InWant", "true"], ["uploadpack.allowFilter", "true"]]
+    steps = [["init", "--quiet"], *[["config", *setting] for setting in settings], ["add", "."]]
+    for step in [*steps, [*identity, "commit", "--quiet", "--message", "runs"]]:
+        subprocess.run(["git", "-C", repository, *step], check=True)
+    head = subprocess.run(["git", "-C", repository, "rev-parse", "HEAD"], check=True, capture_output=True, text=True)
+    return datasets.Origin(repository.as_uri(), head.stdout.strip(), "logs", "CC0-1.0")
+
+
+def test_published_runs_are_downloaded_and_converted(published, tmp_path):
+    logs = datasets.fetch(published, tmp_path / "fetched")
+    assert logs == tmp_path / "fetched/logs" and not (logs.parent / "other").exists()
+    scene = datasets.two_finger_scene([[0, 0], [0.1, 0], [0, 0.1]], position_std=1e-3, orientation_std=0.01)
+    assert len(datasets.import_two_finger_set(logs, tmp_path / "plates")) == 22
+    pushes = datasets.import_two_finger_set(logs, tmp_path / "all", butter=scene)
+    assert len(pushes) == 30 and "latency = 0.16" in (pushes[-1] / "scene.toml").read_text()
+    (expected,) = datasets.import_two_finger(
+        logs / "tri/tri_0_0_90/log2017-05-23_20-25-09.txt", scene, tmp_path / "one", single_pushes=True
+    )
+    found = tmp_path / "all/tri_0_0_90_1-1"
+    assert (found / "log.csv").read_bytes() == (expected / "log.csv").read_bytes()
+    with pytest.raises(stickslip.Error, match=r"bigrect_3pts_20_neg30_90.* is missing"):
+        datasets.import_two_finger_set(tmp_path, tmp_path / "none")
+
+
+def test_data_that_are_not_the_published_ones_are_refused(published, tmp_path):
+    other = dataclasses.replace(published, commit="0" * 40)
+    for origin, words in [
+        ("three-finger", "no data `three-finger`; there are two-finger, mlab"),
+        (other, "git fetch failed"),
+        (dataclasses.replace(published, folder="nothing"), "no folder `nothing`"),
+    ]:
+        with pytest.raises(stickslip.Error, match=words):
+            datasets.fetch(origin, tmp_path / "out")
+        shutil.rmtree(tmp_path / "out", ignore_errors=True)
+    datasets.fetch(published, tmp_path / "out")
+    with pytest.raises(stickslip.Error, match="is not empty"):
+        datasets.fetch(published, tmp_path / "out")
 
 
 def test_alternating_lines_are_read(tmp_path):

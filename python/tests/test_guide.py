@@ -7,7 +7,6 @@ import shlex
 import shutil
 import subprocess
 import sys
-import tomllib
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +14,7 @@ import pytest
 from conftest import ROOT
 
 import stickslip
+from stickslip._toml import tomllib
 
 DOCS = ROOT / "docs"
 GUIDE = DOCS / "guide"
@@ -81,6 +81,8 @@ def test_no_link_of_the_book_leads_nowhere(tmp_path):
     for path, text in pages.items():
         for file, anchor in re.findall(r'href="([^"#:]*)(?:#([^"]*))?"', text):
             target = (path.parent / file).resolve() if file else path
+            if target.is_relative_to(tmp_path / "api"):
+                continue  # the site's reference, made of the package and the crates
             assert target.is_file(), f"{path.name}: {file}"
             assert not anchor or f'id="{anchor}"' in target.read_text(), f"{path.name}: {file}#{anchor}"
 
@@ -163,7 +165,7 @@ def test_a_fit_runs(shell, demo):
     for command in _commands("fit.md"):
         if "FOLDERS" not in command:
             shell(command)
-    assert tomllib.loads((shell.folder / "fitted/scene.toml").read_text())["uncertainty"]["mu_p"] > 0
+    assert tomllib.loads((shell.folder / "fitted/scene.toml").read_text())["pusher"]["friction"] > 0
 
 
 def test_a_bag_becomes_a_report(shell, demo):

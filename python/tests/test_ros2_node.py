@@ -5,7 +5,6 @@ The messages go through the middleware of rclpy where it is installed, else thro
 
 import math
 import re
-import tomllib
 from xml.etree import ElementTree
 
 import numpy as np
@@ -16,6 +15,7 @@ from conftest import ROOT
 from ros2_session import Session, place
 
 import stickslip
+from stickslip._toml import tomllib
 from stickslip_ros import messages, planar, quality
 from stickslip_ros.node import PARAMETERS, StickslipNode
 

@@ -77,3 +77,25 @@ def test_hand_is_tracked_and_rolled_out() -> None:
     assert abs(estimate["x"]) < 1e-3 and estimate["contact_1"] > 0.5
     with pytest.raises(stickslip.Error, match=r"\(1, T \+ 1, 6\)"):
         stickslip.rollout(jaw, [[0.0, 0.0, 0.0]], fingers[:, :3])
+def test_a_copy_goes_on_by_itself(demo, scene):
+    log = stickslip.load_log(demo / "log.csv")
+    rows = list(stickslip.rows(log))
+    tracker = stickslip.Tracker(scene, particles=64, late=0.0)
+    assert tracker.particles()["x"].shape == (0,)
+    for row in rows[:120]:
+        tracker.push(**row)
+    twin = tracker.copy()
+    before = tracker.estimate
+    for row in rows[120:140]:
+        own = twin.push(**{**row, "object": None})
+    # what the twin takes leaves the tracker as it was
+    np.testing.assert_equal(tracker.estimate, before)
+    for row in rows[120:140]:
+        again = tracker.push(**{**row, "object": None})
+    np.testing.assert_equal(again, own)
+    # its particles are those of the whole log
+    run = stickslip.particles(log, scene, rows=[139], particles=64, causal=True, occlude=(120, 140))
+    cloud = tracker.particles()
+    assert set(cloud) | {"row"} == set(run)
+    for name, column in cloud.items():
+        np.testing.assert_array_equal(column, run[name][0], err_msg=name)

@@ -15,7 +15,7 @@ const DYNAMICS: (&str, &[Layer]) = (
     &[
         &["se2", "friction"],
         &["geometry/"],
-        &["scene", "input", "particles", "start"],
+        &["scene", "support", "input", "particles", "start"],
         &["ncp/"],
         &["solver/"],
         &[

@@ -60,6 +60,7 @@ fn part(log: &Log) -> Log {
         object: log.object[ROWS].to_vec(),
         object_covariance: Vec::new(),
         pusher: log.pusher[ROWS].to_vec(),
+        other_fingers: Vec::new(),
         tactile: log
             .tactile
             .iter()

@@ -2,6 +2,7 @@
 //! folders.
 
 mod best_baseline;
+mod figures;
 mod folder_set;
 mod folders;
 mod page;
@@ -18,6 +19,7 @@ use rayon::prelude::*;
 use stickslip::{Occlusion, Tracking};
 use stickslip_evaluation::{RunConditions, ScoredRun, Variant};
 use stickslip_formats::{BagOptions, Experiment};
+use stickslip_report::Report;
 
 use crate::args::{CompareArgs, Program};
 use crate::experiment::{check_occlusion, check_sense, read_folder};
@@ -28,7 +30,8 @@ use crate::output::{show, talk};
 use crate::progress::{Work, bar};
 use crate::verdict::Verdict;
 pub use folders::{Scenes, expand};
-use results::{Comparison, FolderResult, LostFolder, ShownScores};
+pub use results::{ComparedRun, ShownScores};
+use results::{Comparison, FolderResult, LostFolder};
 
 /// Runs above which a person would wait.
 const MANY: usize = 8;
@@ -95,6 +98,11 @@ pub fn compare(args: &CompareArgs) -> Result<Verdict> {
     )
 }
 
+/// The page about runs that a caller made, without players.
+pub fn page_of(runs: &[ComparedRun], particles: usize) -> Report {
+    page::report(&Comparison::of_runs(runs, particles), Vec::new())
+}
+
 /// The comparison, the folders that could be read, and whether all of the logs in them could be.
 fn compare_all(
     args: &CompareArgs,
@@ -141,7 +149,7 @@ fn compare_all(
     }
     let mut verdicts = folders.iter().map(|folder| folder.verdict);
     let cut_off = verdicts.find(|verdict| *verdict != Verdict::Done);
-    let comparison = Comparison::new(args, results, errors);
+    let comparison = Comparison::new((args.shared.particles, args.seeds), results, errors);
     (comparison, folders, cut_off.unwrap_or(Verdict::Done))
 }
 

@@ -10,7 +10,7 @@ use clap::CommandFactory;
 use serde::Serialize;
 use stickslip::diagnosis::{Finding, assumed_stall_force, doubts};
 use stickslip::dynamics::Pose;
-use stickslip::{Estimate, Run, TactileUse, keep_threads_awake, run, run_observed};
+use stickslip::{Estimate, Occlusion, Run, TactileUse, keep_threads_awake, run, run_observed};
 use stickslip_evaluation::{LearnedParameter, ScoredRun, Variant};
 use stickslip_formats::{
     Experiment, write_estimate, write_estimate_mcap, write_estimate_tum, write_modes,
@@ -21,7 +21,7 @@ use stickslip_report::{
 
 use crate::args::{FilterArgs, MethodName, Program};
 use crate::experiment::{
-    check_occlusion, check_sense, experiment_name, one_pusher, read_experiment, reference_name,
+    check_occlusion, check_sense, experiment_name, read_experiment, reference_name,
 };
 use crate::files::{Results, ready_file, ready_folder, refuse_inputs, write_report};
 use crate::given::Given;
@@ -76,12 +76,6 @@ pub fn filter(args: &FilterArgs) -> Result<Verdict> {
     check_sense(&args.shared.force, &experiment)
         .with_context(|| given.log.display().to_string())?;
     check_places(args, &given)?;
-    if args.report.is_some() {
-        one_pusher(&experiment.setup.scene, "a report")?;
-    }
-    if args.mcap {
-        one_pusher(&experiment.setup.scene, "a recording")?;
-    }
     let sample = CloudSample::new(DRAWN);
     let (run, seconds) =
         timed_run(args, &experiment, &sample).with_context(|| given.log.display().to_string())?;
@@ -170,31 +164,43 @@ fn report(
     warnings: &[String],
     path: &Path,
 ) -> Result<PathBuf> {
-    let (name, title) = (experiment_name(&given.log), run.title());
-    let occlusion = args.shared.occlusion();
-    let (shown, runs, start) = since_start(experiment, vec![run]);
-    let reported = ReportedExperiment::new(&name, "", &shown, occlusion, runs);
-    let start = start.map(|start| ("times", format!("from {start} s on")));
+    let name = experiment_name(&given.log);
+    let page = page(&name, experiment, (run, args.shared.occlusion()), warnings);
+    let own = origin([
+        ("log", given.log.display().to_string()),
+        ("scene", given.scene.display().to_string()),
+        ("particles", args.shared.particles.to_string()),
+        ("seed", args.seed.to_string()),
+    ]);
     let report = Report {
-        title: format!("{name}: {title}"),
+        origin: own.into_iter().chain(page.origin).collect(),
+        ..page
+    };
+    write_report(path.to_owned(), &report)
+}
+
+/// The page about a run under an occlusion.
+pub fn page(
+    name: &str,
+    experiment: &Experiment,
+    (run, occlusion): (ReportedRun, Occlusion),
+    warnings: &[String],
+) -> Report {
+    let title = format!("{name}: {}", run.title());
+    let (shown, runs, start) = since_start(experiment, vec![run]);
+    let reported = ReportedExperiment::new(name, "", &shown, occlusion, runs);
+    let reference = ("scored against", reference_name(experiment).to_owned());
+    let start = start.map(|start| ("times", format!("from {start} s on")));
+    let origin = [reference].into_iter().chain(start);
+    Report {
+        title,
         summary: warnings
             .iter()
             .map(|text| Block::Note(format!("Warning: {text}")))
             .collect(),
         sections: vec![reported.section()],
-        origin: origin(
-            [
-                ("log", given.log.display().to_string()),
-                ("scene", given.scene.display().to_string()),
-                ("scored against", reference_name(experiment).to_owned()),
-                ("particles", args.shared.particles.to_string()),
-                ("seed", args.seed.to_string()),
-            ]
-            .into_iter()
-            .chain(start),
-        ),
-    };
-    write_report(path.to_owned(), &report)
+        origin: origin.map(|(key, value)| (key.to_owned(), value)).collect(),
+    }
 }
 
 /// Writes the estimate in all forms that are asked for, estimate.csv first.
@@ -215,8 +221,8 @@ fn write_all(
     if args.mcap {
         let path = folder.join("estimate.mcap");
         let mut bytes = Cursor::new(Vec::new());
-        let (setup, pusher) = (&experiment.setup, &experiment.log.pusher);
-        write_estimate_mcap(&mut bytes, estimate, &run.cloud, pusher, setup)?;
+        let Experiment { setup, log, .. } = experiment;
+        write_estimate_mcap(&mut bytes, estimate, &run.cloud, log, setup)?;
         results.add(path, |file| file.write_all(bytes.get_ref()))?;
     }
     results.place()

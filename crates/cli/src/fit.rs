@@ -1,5 +1,7 @@
 //! `stickslip fit`: learns parameters that a scene cannot know from many pushes.
 
+mod figures;
+
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -8,8 +10,8 @@ use clap::CommandFactory;
 use rayon::prelude::*;
 use serde::Serialize;
 use stickslip_fit::{
-    Constant, CrossValidation, Fit, FitOptions, FittedParameter, Parameter, Push, default_folds,
-    doubts, predict,
+    CrossValidation, Fit, FitOptions, FittedParameter, Parameter, Push, default_folds, doubts,
+    predict,
 };
 use stickslip_formats::BagOptions;
 use stickslip_report::{Block, Report, Section, Table};
@@ -24,10 +26,6 @@ use crate::origin::origin;
 use crate::output::{counted, show_result, talk};
 use crate::progress::stage;
 use crate::verdict::Verdict;
-
-/// Limits of values that predict best.
-const CANNOT_KNOW: &str = "the value that predicts best is not the physical constant, since the model is approximate; \
-    \"constant, 90 %\" is an interval for the constant, calibrated on virtual rigs with as much model drift";
 
 /// Content of fit.json.
 #[derive(Debug, Serialize)]
@@ -48,11 +46,9 @@ struct FitResult {
 
 /// Runs the command.
 pub fn fit(args: &FitArgs) -> Result<Verdict> {
-    let parameters = Parameter::parse_list(&args.free)?;
-    let options = FitOptions {
-        parameters,
-        seed: args.seed,
-    };
+    if !args.free.is_empty() {
+        Parameter::parse_list(&args.free)?; // before anything is read
+    }
     let folders = expand(&args.folders, args.scenes())?;
     let test_folders = test_folders(args, &folders)?;
     let topics = args.topics.options(Program::command())?;
@@ -70,6 +66,11 @@ pub fn fit(args: &FitArgs) -> Result<Verdict> {
     let (result, verdict) = pool.install(|| -> Result<_> {
         let (pushes, verdict) = read_pushes(args, &topics, &folders)?;
         let (test, of_test) = read_pushes(args, &topics, &test_folders)?;
+        let first = pushes.first().expect("there is a folder");
+        let options = FitOptions {
+            parameters: Parameter::list_or_default(&args.free, &first.setup)?,
+            seed: args.seed,
+        };
         let result = learn(args, &folders, &pushes, &test, &options)?;
         Ok((result, verdict.and(of_test)))
     })?;
@@ -210,12 +211,16 @@ fn validations(result: &FitResult) -> impl Iterator<Item = (&'static str, &Cross
 fn page(result: &FitResult, seed: u64) -> Report {
     let mut sections = vec![Section {
         title: "Fitted parameters".to_owned(),
-        blocks: vec![Block::Table(parameters(&result.fit), String::new())],
+        blocks: vec![
+            figures::marginals(&result.fit),
+            Block::Table(parameters(&result.fit), String::new()),
+        ],
     }];
     for (title, validation) in validations(result) {
         sections.push(Section {
             title: format!("Predictions of {title}"),
             blocks: vec![
+                figures::errors(validation),
                 Block::Table(
                     errors(validation, title),
                     "Median over the pushes".to_owned(),
@@ -253,9 +258,6 @@ fn headlines(result: &FitResult) -> Vec<String> {
                 .trim_end()
                 .to_owned()
                 + &format!(", nominal {before}")
-                + &fitted.constant.map_or(String::new(), |constant| {
-                    format!("; constant, 90 %: {}", interval(&constant))
-                })
         })
         .collect();
     if !left.is_empty() {
@@ -288,13 +290,6 @@ fn remarks(result: &FitResult) -> Vec<String> {
     ));
     let warnings = result.warnings.iter();
     remarks.extend(warnings.map(|text| format!("warning: {text}")));
-    if fit
-        .parameters
-        .iter()
-        .any(|fitted| fitted.constant.is_some())
-    {
-        remarks.push(CANNOT_KNOW.to_owned());
-    }
     if let Some(validation) = result.cross_validation.as_ref().filter(|v| !v.pays) {
         let [gain, error] = validation.gain_mm;
         remarks.push(format!(
@@ -319,7 +314,7 @@ fn parameters(fit: &Fit) -> Table {
         "unit",
         "spread/prior",
         "",
-        "constant, 90 %",
+        "90 %",
     ]);
     for fitted in &fit.parameters {
         let said = match (fitted.determined, fitted.learnt) {
@@ -335,23 +330,21 @@ fn parameters(fit: &Fit) -> Table {
             fitted.unit.to_owned(),
             format!("{:.2}", fitted.std_ratio),
             said.to_owned(),
-            fitted
-                .constant
-                .as_ref()
-                .map_or("unknown".to_owned(), interval),
+            format!(
+                "{} to {}",
+                digits(fitted.interval_90[0]),
+                digits(fitted.interval_90[1])
+            ),
         ]);
     }
     table
 }
 
-/// A constant with its 90 % interval.
-fn interval(constant: &Constant) -> String {
-    let [value, low, high] = [constant.value, constant.low_90, constant.high_90].map(digits);
-    format!("{value} ({low} to {high})")
-}
-
 /// A number with four digits after its leading zeros.
 fn digits(value: f64) -> String {
+    if value == 0.0 {
+        return "0".to_owned();
+    }
     let places = 3.0 - value.abs().max(1e-9).log10().floor();
     format!("{value:.*}", places.clamp(0.0, 9.0) as usize)
 }

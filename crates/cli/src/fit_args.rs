@@ -15,14 +15,10 @@ pub struct FitArgs {
     /// one table
     #[arg(required = true, value_name = "DIR")]
     pub folders: Vec<PathBuf>,
-    /// Free parameters, of mu_s, mu_p, mu_f, tripod_radius, centre_of_friction, outline_scale,
-    /// outline_offset, pusher_offset, latency
-    #[arg(
-        long,
-        value_name = "LIST",
-        value_delimiter = ',',
-        default_value = "mu_p,tripod_radius"
-    )]
+    /// Free parameters, of mu_s, mu_p, mu_f, tripod_radius, centre_of_friction, support,
+    /// outline_scale, outline_offset, pusher_offset, latency [default: mu_p, and what the scene
+    /// leaves open of the support]
+    #[arg(long, value_name = "LIST", value_delimiter = ',')]
     pub free: Vec<String>,
     /// Folder for scene.toml and fit.json
     #[arg(long, value_name = "DIR")]

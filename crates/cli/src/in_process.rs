@@ -1,15 +1,20 @@
-//! Files of logs for callers in this process, with what the program would write to standard error:
-//! [`read_log_at`], [`bag_info`], [`log_files`], [`check_occlusion`],
-//! [`check_sense`].
+//! Services of the program for callers in this process: files of logs, with what the program would
+//! write to standard error ([`read_log_at`], [`bag_info`], [`log_files`], [`check_occlusion`],
+//! [`check_sense`]), and its pages ([`run_page`], [`run_player`], [`comparison_page`]).
 
 use std::path::{Path, PathBuf};
 
 use anyhow::Result;
 use stickslip::{Log, Occlusion, Setup};
-use stickslip_formats::{BagOptions, LogWarning};
+use stickslip_evaluation::{ScoredRun, Variant};
+use stickslip_formats::{BagOptions, Experiment, LogWarning};
+use stickslip_report::{Block, Report, ReportedExperiment, ReportedRun, Section};
 
+use crate::compare;
+pub use crate::compare::{ComparedRun, ShownScores};
 use crate::experiment;
 use crate::failure::{Hinted, one_line};
+use crate::filter;
 use crate::info::Shown;
 use crate::log_files::{LogFiles, topic_hint};
 
@@ -61,6 +66,53 @@ pub fn check_occlusion(occlusion: Occlusion, log: &Log) -> Result<(), String> {
 /// The log is refused; in words, with the next step.
 pub fn check_sense(setup: &Setup, log: &Log) -> Result<(), String> {
     experiment::refuse_nonsense(setup, log, "force=True").map_err(|error| words(&error))
+}
+
+/// The page of `stickslip filter --report` about a run. `origin`: name and value of what it was
+/// made of.
+pub fn run_page(
+    name: &str,
+    experiment: &Experiment,
+    (run, occlusion): (ReportedRun, Occlusion),
+    warnings: &[String],
+    origin: Vec<(String, String)>,
+) -> String {
+    let page = filter::page(name, experiment, (run, occlusion), warnings);
+    let report = Report {
+        origin: origin.into_iter().chain(page.origin).collect(),
+        ..page
+    };
+    report.to_html()
+}
+
+/// A page that plays a run back and shows nothing else.
+pub fn run_player(experiment: &Experiment, scored: ScoredRun, occlusion: Occlusion) -> String {
+    let title = scored.variant.title();
+    let run = ReportedRun {
+        scored,
+        cloud: Vec::new(),
+    };
+    let reported = ReportedExperiment::new(title, "", experiment, occlusion, vec![run]);
+    let report = Report {
+        sections: vec![Section {
+            title: String::new(),
+            blocks: vec![Block::Playback(Box::new(reported.playback()))],
+        }],
+        ..Report::default()
+    };
+    report.to_html()
+}
+
+/// The page of `stickslip compare --report` about runs, without players.
+pub fn comparison_page(runs: &[ComparedRun], particles: usize) -> String {
+    compare::page_of(runs, particles).to_html()
+}
+
+/// The compared method of a name, as in the JSON of `stickslip compare`.
+#[must_use]
+pub fn compared_method(key: &str) -> Option<Variant> {
+    let mut all = Variant::COMPARED.into_iter();
+    all.find(|variant| variant.key() == key)
 }
 
 fn at<T>(

@@ -45,7 +45,12 @@ use std::io::{self, Write};
 use clap::Parser;
 
 use crate::args::{Command, Program};
-pub use crate::in_process::{bag_info, check_occlusion, check_sense, log_files, read_log_at};
+pub use crate::in_process::{
+    ComparedRun, ShownScores, bag_info, check_occlusion, check_sense, compared_method,
+    comparison_page, log_files, read_log_at, run_page, run_player,
+};
+pub use crate::reported_run::DRAWN;
+pub use stickslip_report::CloudSample;
 
 /// Runs the program with the words of a command line, those after its name, and returns its exit
 /// code: 0 done, 1 failed, 2 bad arguments, 3 done with input lost. Results go to the process's

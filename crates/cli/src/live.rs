@@ -14,7 +14,7 @@ use anyhow::Result;
 use stickslip::{Setup, TrackerOptions};
 use stickslip_report::live_page;
 
-use crate::experiment::{one_pusher, read_scene_file};
+use crate::experiment::read_scene_file;
 use crate::failure::hinted;
 use crate::given::scene_file;
 use crate::live_args::LiveArgs;
@@ -118,7 +118,6 @@ fn stop_on_signal(stop: Stop) {
 
 /// Serves the live page of a scene, and says where.
 fn open_page(setup: &Setup, name: &str, port: u16) -> Result<PageServer> {
-    one_pusher(&setup.scene, "the page")?;
     let page = live_page(&setup.scene, name);
     let server = PageServer::start(page, port).map_err(|error| {
         hinted(

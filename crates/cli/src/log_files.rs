@@ -331,7 +331,7 @@ pub fn topic_hint(error: anyhow::Error, option: impl Fn(&str, &str) -> String) -
     let named = |key: &str| format!("name it with {}", option(key, "TOPIC"));
     let help = match *read.problem {
         McapProblem::MissingTopic { topic, .. } => named(&topic.to_string()),
-        McapProblem::SensorNumber { missing } => named(&format!("fixel_{missing}")),
+        McapProblem::Gap { missing } => named(&missing.to_string()),
         McapProblem::JumpsBack {
             log_times: Some([to, from]),
             ..

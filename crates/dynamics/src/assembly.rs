@@ -236,7 +236,7 @@ impl<const W: usize> Assembly<W> {
             context: &StepContext { h, rate, .. },
             pushers,
             chunk,
-            foot_offset,
+            support,
             ..
         }: &StepBodies<'_, W>,
         (particles, object): (&Particles<W>, &Transform<Lanes<W>>),
@@ -264,7 +264,7 @@ impl<const W: usize> Assembly<W> {
             (omega + torque * inv_inertia) * rho,
         ];
         let Friction { mu_s, d_tri, .. } = particles.friction;
-        let arms = scene.foot_arms(stance, object, (d_tri, foot_offset));
+        let arms = scene.foot_arms(stance, object, (d_tri, support));
         let loads = scene.foot_loads();
         for ((row, [x, y]), load) in ncp.feet.iter_mut().zip(arms).zip(loads) {
             *row = FootRow {

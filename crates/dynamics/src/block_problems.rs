@@ -40,7 +40,7 @@ impl<const W: usize> Source<W> for BlockProblems<'_, W> {
                 pushers: self.pushers,
                 chunk: self.first + chunk,
                 fixel_offsets: self.pushers.fixel_offsets(self.first + chunk),
-                foot_offset: self.pushers.foot_offset(self.first + chunk),
+                support: self.pushers.support(self.first + chunk),
             },
             &self.particles[chunk],
             self.narrow,

@@ -84,9 +84,9 @@ impl<const W: usize> Pushers<'_, W> {
                 let driven = offsets.pusher[chunk * fingers..][..*fingers].iter();
                 let driven: Vec<_> = driven.map(alone).collect();
                 let beside: Vec<_> = self.fixel_offsets(chunk).iter().map(alone).collect();
-                let feet = self.foot_offset(chunk).into_iter();
+                let feet = self.support(chunk).into_iter();
                 let feet: Vec<_> = feet
-                    .map(|offset| offset.map(|x| Lanes([x.0[lane]])))
+                    .map(|support| support.map(|x| Lanes([x.0[lane]])))
                     .collect();
                 let turn = offsets.pusher_turn.get(chunk);
                 let turn: Vec<_> = turn.map(|turn| Lanes([turn.0[lane]])).into_iter().collect();
@@ -94,7 +94,7 @@ impl<const W: usize> Pushers<'_, W> {
                     pusher: &driven,
                     pusher_turn: &turn,
                     fixels: &beside,
-                    foot_offsets: &feet,
+                    supports: &feet,
                 };
                 then(&Pushers::Offset {
                     pusher: *pusher,

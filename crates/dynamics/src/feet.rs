@@ -7,6 +7,7 @@ use crate::geometry::transform::Transform;
 use crate::ncp::problem::Foot;
 use crate::scene::{Feet, Scene};
 use crate::se2::Pose;
+use crate::support::Support;
 
 impl Scene {
     /// Positions of the feet in the object's frame (m); those of a tripod of radius 1.
@@ -21,27 +22,28 @@ impl Scene {
     }
 
     /// Arms of the feet in the world frame (m) of turned objects; `d_tri` is the radius of a tripod
-    /// (m). An offset shifts the feet from those of the scene, and turns them about their centre of
-    /// friction.
+    /// (m), `support` an image of the scene's feet.
     #[inline(always)]
     pub(crate) fn foot_arms<const W: usize>(
         &self,
         stance: &[[f64; 2]; 3],
         object: &Transform<Lanes<W>>,
-        (d_tri, offset): (Lanes<W>, Option<&Pose<Lanes<W>>>),
+        (d_tri, support): (Lanes<W>, Option<&Support<Lanes<W>>>),
     ) -> [[Lanes<W>; 2]; 3] {
         let radius = match self.feet {
             Feet::Tripod { .. } => d_tri,
             Feet::Known { .. } => Lanes::splat(1.0),
         };
-        let Some(offset) = offset else {
+        let Some(support) = support else {
             return stance.map(|place| object.rotate(place).map(|x| radius * x));
         };
-        let (offset, centre) = (Transform::from(*offset), self.centre_of_friction());
+        let centre = self.centre_of_friction();
         stance.map(|place| {
-            let from_centre = std::array::from_fn(|k| radius * place[k] - centre[k]);
-            let turned = offset.transform_point(from_centre);
-            object.rotate(std::array::from_fn(|k| turned[k] + centre[k]))
+            let [x, y] = std::array::from_fn(|k| radius * place[k] - centre[k]);
+            object.rotate(std::array::from_fn(|k| {
+                let [along_x, along_y] = support.map[k];
+                support.centre[k] + (along_x * x + along_y * y) + centre[k]
+            }))
         })
     }
 
@@ -55,6 +57,19 @@ impl Scene {
                     |axis: usize| (0..3).map(|foot| loads[foot] * positions[foot][axis]).sum();
                 [sum(0), sum(1)]
             }
+        }
+    }
+
+    /// Three known feet: the image of the scene's.
+    #[must_use]
+    pub fn image_of_feet(&self, support: &Support) -> Feet {
+        let alone = support.map(|x| Lanes([x]));
+        let object = Transform::from(Pose::default().map(|x: f64| Lanes([x])));
+        let d_tri = Lanes([self.nominal.d_tri]);
+        let arms = self.foot_arms(&self.stance(), &object, (d_tri, Some(&alone)));
+        Feet::Known {
+            positions: arms.map(|arm| arm.map(|x| x.0[0])),
+            loads: self.foot_loads(),
         }
     }
 

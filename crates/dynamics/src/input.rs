@@ -5,6 +5,7 @@ use std::ops::{Deref, DerefMut};
 use stickslip_lanes::Lanes;
 
 use crate::se2::{Pose, Twist};
+use crate::support::Support;
 
 /// Fingers that a pusher may have.
 pub const MOST_FINGERS: usize = 4;
@@ -101,9 +102,8 @@ pub struct Offsets<'a, const W: usize> {
     pub pusher_turn: &'a [Lanes<W>],
     /// Offsets of the fixels (m): those of the first chunk, then those of the second, ...
     pub fixels: &'a [[Lanes<W>; 2]],
-    /// Offsets of the feet from the scene's (m, m), and their turns about their centre of friction
-    /// (rad), in the object's frame, chunk by chunk. Empty where they stand as in the scene.
-    pub foot_offsets: &'a [Pose<Lanes<W>>],
+    /// Affine images of the scene's feet, chunk by chunk. Empty where they stand as in the scene.
+    pub supports: &'a [Support<Lanes<W>>],
 }
 
 /// Input of one step.

@@ -21,6 +21,7 @@ mod start;
 mod stated_problem;
 mod step;
 mod step_work;
+mod support;
 
 pub use compiled_step::CompiledStep;
 pub use friction::Friction;
@@ -46,3 +47,4 @@ pub use start::{SpeedProfile, Start};
 pub use step::Dynamics;
 pub use step_work::StepWork;
 pub use stickslip_lanes::{Lanes, Level, Mask, on_widest, sin_cos};
+pub use support::Support;

@@ -7,6 +7,7 @@ use crate::geometry::transform::Transform;
 use crate::input::{FingerMotion, MOST_FINGERS, Offsets, PusherMotion};
 use crate::scene::Scene;
 use crate::se2::{Pose, Twist};
+use crate::support::Support;
 
 /// A scene, with quantities derived from it that no step changes.
 #[derive(Clone, Debug)]
@@ -97,9 +98,8 @@ pub(crate) struct StepBodies<'a, const W: usize> {
     pub chunk: usize,
     /// Offsets of the fixels (m); none where they stand as the scene says.
     pub fixel_offsets: &'a [[Lanes<W>; 2]],
-    /// Offset of the feet from the scene's, and their turn; `None` where they stand as in the
-    /// scene.
-    pub foot_offset: Option<&'a Pose<Lanes<W>>>,
+    /// Image of the scene's feet; `None` where they stand as in the scene.
+    pub support: Option<&'a Support<Lanes<W>>>,
 }
 
 /// The pusher of every chunk of particles in one step, and where the fixels stand.
@@ -259,12 +259,11 @@ impl<const W: usize> Pushers<'_, W> {
         }
     }
 
-    /// Offset of the feet from the scene's, and their turn, in one chunk; `None` where they stand
-    /// as in the scene.
+    /// Images of the scene's feet in one chunk; `None` where they stand as in the scene.
     #[inline(always)]
-    pub fn foot_offset(&self, chunk: usize) -> Option<&Pose<Lanes<W>>> {
+    pub fn support(&self, chunk: usize) -> Option<&Support<Lanes<W>>> {
         match self {
-            Self::Offset { offsets, .. } => offsets.foot_offsets.get(chunk),
+            Self::Offset { offsets, .. } => offsets.supports.get(chunk),
             _ => None,
         }
     }

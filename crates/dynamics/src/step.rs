@@ -138,7 +138,7 @@ impl Dynamics {
     ///
     /// # Panics
     /// If an offset of a finger or of a fixel is missing for a chunk of particles. Also if the
-    /// turns of the pusher or the offsets of the feet are neither none at all nor one for each
+    /// turns of the pusher or the supports are neither none at all nor one for each
     /// chunk.
     pub fn step_block_offset<const W: usize>(
         &self,
@@ -159,7 +159,7 @@ impl Dynamics {
         assert_eq!(offsets.fixels.len(), chunks * fixels, "and for each fixel");
         let turn = offsets.pusher_turn.len();
         assert!(turn == chunks || turn == 0, "a turn for each chunk");
-        let feet = offsets.foot_offsets.len();
+        let feet = offsets.supports.len();
         assert!(feet == chunks || feet == 0, "feet for each chunk");
         let pushers = Pushers::Offset {
             pusher: SharedPusher::new(&self.scene, input.pusher.as_ref()),

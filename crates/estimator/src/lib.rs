@@ -35,7 +35,7 @@ mod tuning;
 mod uncertainty;
 
 pub use angle::wrapped;
-pub use baseline::predictor::{NominalPrediction, NominalPredictor};
+pub use baseline::predictor::{NominalPrediction, NominalPredictor, Surface};
 pub use belief_mode::BeliefMode;
 pub use contact_slip::ContactSlip;
 pub use counted::counted;

@@ -83,6 +83,14 @@ impl Log {
         std::iter::once(&self.pusher[..]).chain(others)
     }
 
+    /// Measured pose of each finger at a row, none past the end.
+    pub fn fingers_at(&self, row: usize) -> Vec<Option<Pose>> {
+        let fingers = self.fingers();
+        fingers
+            .map(|poses| poses.get(row).copied().flatten())
+            .collect()
+    }
+
     /// Returns the measurements of row `row`.
     ///
     /// # Panics

@@ -162,7 +162,16 @@ impl Setup {
 
     /// Returns true if the particles differ in where their feet stand.
     pub(crate) fn support_is_uncertain(&self) -> bool {
-        self.uncertainty.centre_of_friction > 0.0 || self.uncertainty.tripod_angle > 0.0
+        let unsure = &self.uncertainty;
+        let scaled = !self.has_tripod() && unsure.friction.d_tri > 0.0;
+        scaled
+            || [
+                unsure.centre_of_friction,
+                unsure.tripod_angle,
+                unsure.foot_stretch,
+            ]
+            .iter()
+            .any(|std| *std > 0.0)
     }
 
     /// Largest distance (m) of a pusher that yielded behind its logged pose: three standard

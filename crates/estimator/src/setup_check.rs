@@ -270,6 +270,7 @@ fn uncertainty(unknown: &Uncertainty) -> Vec<Number> {
     ];
     let plain = [
         ("uncertainty.centre_of_friction", unknown.centre_of_friction),
+        ("uncertainty.foot_stretch", unknown.foot_stretch),
         ("uncertainty.force_std", unknown.force_std),
         ("uncertainty.roughness", unknown.roughness),
         ("uncertainty.camera_noise", unknown.camera_noise),

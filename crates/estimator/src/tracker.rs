@@ -142,6 +142,9 @@ pub struct StepSize {
 /// assert_eq!(particles.len(), 500);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
+///
+/// A clone goes on by itself, as the original would: equal rows give it equal estimates.
+#[derive(Clone)]
 pub struct Tracker<'o> {
     setup: Setup,
     camera: Camera,

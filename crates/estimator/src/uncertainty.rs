@@ -15,6 +15,9 @@ pub struct Uncertainty {
     pub centre_of_friction: f64,
     /// Standard deviation of the angle by which the feet are turned about that centre (rad).
     pub tripod_angle: f64,
+    /// Standard deviation of the two numbers of ln of the stretch of the feet's triangle: its
+    /// factor along one axis, and the inverse across it.
+    pub foot_stretch: f64,
     /// Disturbing force per step of 1/30 s, as a share of μ_s m g on each axis, times the radius of
     /// gyration for rotation.
     pub force_std: f64,
@@ -59,6 +62,7 @@ impl Default for Uncertainty {
             },
             centre_of_friction: 0.15,
             tripod_angle: ANY_ANGLE,
+            foot_stretch: 0.3,
             force_std: 0.25,
             pusher_offset: 3e-4,
             pusher_lag: 3e-3,
@@ -79,6 +83,7 @@ impl Uncertainty {
         Self {
             centre_of_friction: 0.0,
             tripod_angle: 0.0,
+            foot_stretch: 0.0,
             ..self
         }
     }

@@ -27,6 +27,9 @@ impl Band {
     }
 }
 
+/// Standard deviations of a normal distribution that 95 % lie within.
+const NORMAL_95: f64 = 1.96;
+
 /// Pairs below which a median has no standard error.
 pub const FEWEST_PAIRS: usize = 6;
 
@@ -38,9 +41,12 @@ pub const FEWEST_PAIRS: usize = 6;
 pub struct PairedDifference {
     /// Median of a - b over the pairs, in the scores' unit.
     pub median: f64,
-    /// Standard error of that median: its distribution-free 95 % interval, from one order statistic
-    /// to another, over 2 · 1.96 (McKean & Schrader 1984). Infinite for fewer than six pairs, which
-    /// have no such interval.
+    /// Distribution-free 95 % interval of that median, from one order statistic to another. Also of
+    /// heavy-tailed differences, of which the median is far from the middle of it. `None` for fewer
+    /// than six pairs, which have no such interval.
+    pub interval: Option<[f64; 2]>,
+    /// Standard error of that median: the length of its interval over 2 · 1.96 (McKean & Schrader
+    /// 1984). Infinite where there is none.
     pub standard_error: f64,
     /// Number of pairs.
     pub pairs: usize,
@@ -67,9 +73,12 @@ impl PairedDifference {
         assert_eq!(a.len(), b.len(), "scores come in pairs");
         let mut differences: Vec<f64> = a.iter().zip(b).map(|(a, b)| a - b).collect();
         differences.sort_by(f64::total_cmp);
+        let interval = interval_of_median(&differences);
+        let length = interval.map_or(f64::INFINITY, |[low, high]| high - low);
         Some(Self {
             median: quantile(&differences, 0.5)?,
-            standard_error: error_of_median(&differences),
+            interval,
+            standard_error: length / (2.0 * NORMAL_95),
             pairs: a.len(),
         })
     }
@@ -86,18 +95,17 @@ impl PairedDifference {
     }
 }
 
-/// Standard error of the median of sorted numbers.
-fn error_of_median(sorted: &[f64]) -> f64 {
-    const NORMAL_95: f64 = 1.96;
+/// Distribution-free 95 % interval of the median of sorted numbers.
+fn interval_of_median(sorted: &[f64]) -> Option<[f64; 2]> {
     let n = sorted.len();
     if n < FEWEST_PAIRS {
-        return f64::INFINITY;
+        return None;
     }
     // the interval from the c-th smallest to the c-th largest
     let c = ((n + 1) as f64 / 2.0 - NORMAL_95 * (n as f64 / 4.0).sqrt())
         .round()
         .max(1.0) as usize;
-    (sorted[n - c] - sorted[c - 1]) / (2.0 * NORMAL_95)
+    Some([sorted[c - 1], sorted[n - c]])
 }
 
 /// Returns the p-value of the sign test, two-sided: how likely so many wins and losses or fewer of
@@ -139,6 +147,21 @@ mod tests {
             })
         );
         assert_eq!(Band::of(&[]), None);
+    }
+
+    /// Twenty of twenty pairs are below 0, most a little and some by far: the interval excludes 0,
+    /// two standard errors about the median do not.
+    #[test]
+    fn the_interval_of_a_skewed_difference_lies_on_its_side() {
+        let a: Vec<f64> = (0..20).map(|k| -libm::pow(1.3, f64::from(k))).collect();
+        let found = PairedDifference::of(&a, &[0.0; 20]).unwrap();
+        // from the 6th smallest to the 6th largest
+        assert_eq!(found.interval, Some([a[14], a[5]]));
+        assert_eq!(found.direction(2.0), Direction::Unclear);
+        assert_eq!(
+            PairedDifference::of(&a[..5], &[0.0; 5]).unwrap().interval,
+            None
+        );
     }
 
     /// Evenly spread over (0, 1), n numbers have a median whose standard error tends to 1/(2 f √n)
@@ -198,6 +221,7 @@ mod tests {
             difference,
             PairedDifference {
                 median: -0.5,
+                interval: Some([-0.5; 2]),
                 standard_error: 0.0,
                 pairs: 6
             }

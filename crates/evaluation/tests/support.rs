@@ -65,7 +65,7 @@ fn off(experiment: &Experiment, more: &str, seed: u64) -> (f64, f64) {
 
 #[test]
 fn where_the_centre_of_friction_lies_is_learned_from_the_push_that_is_seen() {
-    let told = "\n[uncertainty]\ncentre_of_friction = 0\ntripod_angle = 0\n";
+    let told = "\n[uncertainty]\ncentre_of_friction = 0\ntripod_angle = 0\nfoot_stretch = 0\n";
     let mut sums = [[0.0; 2]; 2];
     for seed in 0..6 {
         let experiment = logged(seed);
@@ -78,5 +78,5 @@ fn where_the_centre_of_friction_lies_is_learned_from_the_push_that_is_seen() {
     let [[unknown, apart], [known, far]] = sums;
     assert!(unknown.sqrt() < 2.0, "{unknown} off by {apart} m");
     assert!(known.sqrt() > 3.0, "{known} off by {far} m");
-    assert!(apart < 0.5 * far, "{apart} m, {far} m");
+    assert!(apart < 0.6 * far, "{apart} m, {far} m");
 }

@@ -29,7 +29,7 @@ const FEW_NEAR: f64 = 1e-3;
 const HALVINGS: usize = 12;
 
 /// Working memory for observations that move particles.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Bridge {
     ensemble: Ensemble,
     /// Weights by a share of an observation, or weights of the particles that move, (N,).

@@ -11,7 +11,9 @@ use crate::streams::{Draw, Purpose, Streams};
 use crate::threads::parallel::PerThread;
 use crate::weights::{BlockWeights, LogWeights, UnnormalisedWeights};
 
-/// A particle filter over a model.
+/// A particle filter over a model. A clone draws the random numbers that the original draws: equal
+/// observations give it equal particles.
+#[derive(Clone)]
 pub struct ParticleFilter<M: Model> {
     pub(crate) model: M,
     pub(crate) settings: Settings,

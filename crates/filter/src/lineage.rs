@@ -4,7 +4,7 @@
 ///
 /// Few of either say that the particles, however many and however equal their weights, are copies
 /// of a few (Doucet & Johansen 2009, section 4.3, on path degeneracy).
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Lineage {
     /// For each particle the one of the generation that it descends from.
     roots: Vec<u32>,

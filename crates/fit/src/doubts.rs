@@ -20,5 +20,10 @@ pub fn doubts(pushes: &[Push], fit: &Fit) -> Vec<String> {
             "the chains have not converged (split R-hat {split_rhat:.3}, at most 1.01 is); the scene keeps its spreads"
         )
     });
-    pushes.iter().flat_map(of_push).chain(unsettled).collect()
+    let left_out = fit
+        .left_out
+        .iter()
+        .map(|push| format!("{push}, and is left out"));
+    let of_pushes = pushes.iter().flat_map(of_push);
+    of_pushes.chain(left_out).chain(unsettled).collect()
 }

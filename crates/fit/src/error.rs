@@ -37,7 +37,7 @@ pub enum FitError {
         push: String,
     },
     /// A push in which nothing touches the object.
-    #[error("{push}: {found}. It is no push: leave it out of the fit")]
+    #[error("{push}: {found}. It is no push")]
     Untouched {
         /// Its name.
         push: String,

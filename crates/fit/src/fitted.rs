@@ -1,34 +1,26 @@
 //! Fit of parameters to pushes: [`fit`].
 
 use serde::Serialize;
-use stickslip::Setup;
+use stickslip::{Setup, quantile};
 use stickslip_dynamics::ShapeError;
 use stickslip_filter::Streams;
 
 use crate::chain::Chain;
-use crate::discrepancy::{Constant, is_known};
 use crate::error::FitError;
 use crate::likelihood::Noise;
-use crate::optimum::{most_tried, optima};
 use crate::parameter::Parameter;
-use crate::posterior::{NUISANCES, Posterior, noise_of};
+use crate::posterior::{Posterior, noise_of};
 use crate::prior::Prior;
 use crate::progress::{Listener, Progress};
 use crate::push::{PreparedPush, Push};
-use crate::sampler::{most_sampled, rounds, sample};
+use crate::sampler::{most_sampled, sample};
 
 /// Posterior over prior standard deviation below which a parameter counts as determined.
 const DETERMINED: f64 = 0.5;
 
-/// Posterior over prior standard deviation up to which a parameter takes the value that predicts
-/// best. Above, the pushes say next to nothing, and it keeps its first guess.
+/// Posterior over prior standard deviation up to which a scene takes the fitted value. Above, the
+/// pushes say next to nothing, and it keeps its first guess.
 const LEARNT: f64 = 0.8;
-
-/// Vectors drawn from the prior, the best of which start searches.
-const SCREENED: usize = 256;
-
-/// Searches for the optimum.
-const SEARCHES: usize = 4;
 
 /// Split R̂ above which the chains have not settled (Vehtari et al. 2021).
 const SETTLED: f64 = 1.01;
@@ -58,6 +50,8 @@ pub struct Fit {
     pub noise: Noise,
     /// Facts about the exploration of the posterior.
     pub sampling: Sampling,
+    /// Pushes that teach nothing, since nothing touches the object, each with what was found.
+    pub left_out: Vec<String>,
     /// Samples of the posterior, as [`Posterior`] takes them.
     #[serde(skip)]
     pub(crate) samples: Vec<Vec<f64>>,
@@ -73,9 +67,9 @@ pub struct FittedParameter {
     pub parameter: Parameter,
     /// Symbol of its unit; empty for a bare number.
     pub unit: &'static str,
-    /// The value that predicts best; the prior's centre where nothing was learnt of it.
+    /// The posterior's mean, of the logarithm where the prior is of that.
     pub value: f64,
-    /// Standard deviation; that of the prior where nothing was learnt of it.
+    /// Its standard deviation.
     pub std: f64,
     /// Its prior.
     pub prior: Prior,
@@ -90,10 +84,8 @@ pub struct FittedParameter {
     pub determined: bool,
     /// True if it is below 0.8, and `value` the fit's.
     pub learnt: bool,
-    /// Constant of the rig, which `value` imitates. It is known of `mu_p` and `tripod_radius` if
-    /// both are free, and besides them at most `mu_s` and `mu_f`. For other fits the difference
-    /// between both is unknown.
-    pub constant: Option<Constant>,
+    /// Ends of the 90 % interval.
+    pub interval_90: [f64; 2],
 }
 
 /// Facts about the exploration of the posterior.
@@ -125,35 +117,38 @@ pub fn fit(
     progress: &Listener<'_>,
 ) -> Result<Fit, FitError> {
     let progress = Progress::new(progress, options.most_vectors());
-    let prepared = prepare(pushes, &progress)?;
-    fit_prepared(&prepared.iter().collect::<Vec<_>>(), options, &progress)
+    let (prepared, left_out) = prepare(pushes, &progress)?;
+    let fit = fit_prepared(&prepared.iter().collect::<Vec<_>>(), options, &progress)?;
+    Ok(Fit { left_out, ..fit })
 }
 
-/// Pushes made ready; at least two.
+/// Pushes made ready, at least two; and those in which nothing touches the object, in words.
 pub(crate) fn prepare(
     pushes: &[Push],
     progress: &Progress<'_>,
-) -> Result<Vec<PreparedPush>, FitError> {
-    if pushes.len() < 2 {
-        return Err(FitError::TooFewPushes {
-            pushes: pushes.len(),
-            least: 2,
-        });
-    }
-    let prepared = pushes.iter().cloned().map(|push| {
+) -> Result<(Vec<PreparedPush>, Vec<String>), FitError> {
+    let (mut ready, mut left_out) = (Vec::new(), Vec::new());
+    for push in pushes {
         progress.show();
-        PreparedPush::new(push)
-    });
-    prepared.collect()
+        match PreparedPush::new(push.clone()) {
+            Ok(push) => ready.push(push),
+            Err(error @ FitError::Untouched { .. }) => left_out.push(error),
+            Err(error) => return Err(error),
+        }
+    }
+    let (pushes, least) = (ready.len(), 2);
+    if pushes < least {
+        let too_few = FitError::TooFewPushes { pushes, least };
+        return Err(left_out.into_iter().next().unwrap_or(too_few));
+    }
+    let left_out = left_out.iter().map(FitError::to_string);
+    Ok((ready, left_out.collect()))
 }
 
 impl FitOptions {
-    /// Upper limit of the number of vectors that a fit tries; a search rarely exceeds its share.
+    /// Upper limit of the number of vectors that a fit tries.
     pub(crate) fn most_vectors(&self) -> u64 {
-        let dimension = self.parameters.len() + NUISANCES;
-        let costly = !self.parameters.iter().all(|free| free.keeps_scene());
-        let searches = (SEARCHES + 1) as u64 * most_tried(dimension);
-        SCREENED as u64 + searches + most_sampled(dimension, rounds(costly))
+        most_sampled(!self.parameters.iter().all(|free| free.keeps_scene()))
     }
 }
 
@@ -165,103 +160,52 @@ pub(crate) fn fit_prepared<'a>(
     let posterior = Posterior::new(pushes.to_vec(), &options.parameters, progress)?;
     let streams = Streams::new(options.seed);
 
-    // the optimum, from the best of many draws from the prior
-    let (starts, screened) = screen(&posterior, streams);
-    let (best, searched) = optima(&posterior, &starts);
-    let optimum = &best[0];
-
-    // the posterior around it
-    let (chain, sampled) = sample(&posterior, optimum, SETTLED, streams);
+    let (chain, sampled) = sample(&posterior, SETTLED, streams);
     let covariance = chain.covariance();
     let free = options.parameters.len();
-    let stds: Vec<f64> = (0..free).map(|k| covariance[k][k].sqrt()).collect();
-
-    // what nothing was learnt of keeps its prior, and the others go with that
-    let (values, noise, refined) = settle(options, &posterior, optimum, &stds)?;
-
-    let parameters = posterior.parameters.iter().zip(&values).zip(&stds);
+    let means = chain.means();
+    let samples = chain.thinned(KEPT_SAMPLES);
+    let parameters = posterior.parameters.iter().enumerate();
     let fit = Fit {
         pushes: pushes.len(),
         parameters: parameters
-            .map(|((&(parameter, prior), &z), &std)| {
-                let constant = Constant::behind(parameter, &prior, [z, std], noise.drift);
-                let constant = constant.filter(|_| is_known(&options.parameters));
-                FittedParameter {
-                    constant,
-                    ..fitted(parameter, prior, [z, std])
-                }
+            .map(|(k, &(parameter, prior))| {
+                let values: Vec<f64> = samples.iter().map(|sample| sample[k]).collect();
+                let moments = [means[k], covariance[k][k].sqrt()];
+                fitted(parameter, prior, moments, &values)
             })
             .collect(),
         correlation: correlation(&covariance, free),
-        noise,
-        sampling: sampling(&chain, screened + searched + sampled + refined),
-        samples: chain.thinned(KEPT_SAMPLES),
+        noise: posterior.noise(&means),
+        left_out: Vec::new(),
+        sampling: sampling(&chain, sampled),
+        samples,
     };
-    Ok(fit.with_unsolved(&posterior, &values))
+    Ok(fit.with_unsolved(&posterior, &means))
 }
 
-/// The best of [`SCREENED`] draws from the prior and of its centre; the number of vectors tried.
-fn screen(posterior: &Posterior<'_>, streams: Streams) -> (Vec<Vec<f64>>, u64) {
-    let dimension = posterior.dimension();
-    let draw = |k: usize| -> Vec<f64> {
-        (0..dimension)
-            .map(|i| match k {
-                0 => 0.0,
-                _ => streams.normal(0, k as u32, i as u32),
-            })
-            .collect()
-    };
-    let vectors: Vec<Vec<f64>> = (0..SCREENED).map(draw).collect();
-    let densities = posterior.log_densities(&vectors);
-    let mut order: Vec<usize> = (0..SCREENED).collect();
-    order.sort_by(|a, b| densities[*b].total_cmp(&densities[*a]));
-    let best = order[..SEARCHES].iter().map(|k| vectors[*k].clone());
-    (best.collect(), SCREENED as u64)
-}
-
-/// Whitened values of all parameters, the noise that goes with them, and the number of vectors
-/// tried.
-fn settle(
-    options: &FitOptions,
-    posterior: &Posterior<'_>,
-    optimum: &[f64],
-    stds: &[f64],
-) -> Result<(Vec<f64>, Noise, u64), FitError> {
-    let free = stds.len();
-    let kept: Vec<usize> = (0..free).filter(|k| stds[*k] < LEARNT).collect();
-    if kept.len() == free {
-        return Ok((optimum[..free].to_vec(), posterior.noise(optimum), 0));
-    }
-    let parameters: Vec<Parameter> = kept.iter().map(|k| options.parameters[*k]).collect();
-    let smaller = posterior.with_parameters(&parameters)?;
-    let start = kept.iter().map(|k| optimum[*k]);
-    let start: Vec<f64> = start.chain(optimum[free..].iter().copied()).collect();
-    let (best, tried) = optima(&smaller, &[start]);
-    let mut values = vec![0.0; free];
-    for (k, z) in kept.iter().zip(&best[0]) {
-        values[*k] = *z;
-    }
-    Ok((values, smaller.noise(&best[0]), tried))
-}
-
-/// A parameter whose whitened coordinate came out at `z`, with a standard deviation; the constant
-/// is left open.
-fn fitted(parameter: Parameter, prior: Prior, [z, std]: [f64; 2]) -> FittedParameter {
-    let learnt = std < LEARNT;
-    let value = prior.value(z);
+/// A parameter, by mean, standard deviation and samples of its whitened coordinate.
+fn fitted(
+    parameter: Parameter,
+    prior: Prior,
+    [mean, std]: [f64; 2],
+    samples: &[f64],
+) -> FittedParameter {
+    let value = prior.value(mean);
+    let end = |q| prior.value(quantile(samples, q).expect("there are samples"));
     FittedParameter {
         name: parameter.name(),
         parameter,
         unit: parameter.unit(),
         value,
-        std: prior.spread(value, if learnt { std } else { 1.0 }),
+        std: prior.spread(value, std),
+        interval_90: [0.05, 0.95].map(end),
         prior,
         prior_value: prior.value(0.0),
         prior_std: prior.spread(prior.value(0.0), 1.0),
         std_ratio: std,
         determined: std < DETERMINED,
-        learnt,
-        constant: None,
+        learnt: std < LEARNT,
     }
 }
 

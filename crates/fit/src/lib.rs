@@ -1,17 +1,15 @@
 //! Learns parameters that a scene cannot know from many pushes: [`fit`].
 //!
 //! A vector of parameters is judged by how well it predicts every push blind, from the first pose
-//! of the object and the recorded pusher alone. The posterior is explored by an optimiser with
-//! several starts and by an ensemble of Markov chains; [`cross_validate`] gives the accuracy of the
-//! fit on pushes that it has not seen.
+//! of the object and the recorded pusher alone. Several populations that cool from the prior sample
+//! the posterior; [`cross_validate`] gives the accuracy of the fit on pushes that it has not seen.
 
 mod chain;
-mod discrepancy;
+mod coarsening;
 mod doubts;
 mod error;
 mod fitted;
 mod likelihood;
-mod optimum;
 mod parameter;
 mod posterior;
 mod prior;
@@ -21,7 +19,6 @@ mod sampler;
 mod scene_text;
 mod validation;
 
-pub use discrepancy::Constant;
 pub use doubts::doubts;
 pub use error::FitError;
 pub use fitted::{Fit, FitOptions, FittedParameter, Sampling, fit};

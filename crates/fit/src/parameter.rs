@@ -1,7 +1,9 @@
 //! Parameters that can be learnt: [`Parameter`].
 
-use stickslip::Setup;
-use stickslip_dynamics::{Feet, Friction, Part, Shape, ShapeError};
+use std::f64::consts::FRAC_PI_3;
+
+use stickslip::{Setup, Surface};
+use stickslip_dynamics::{Friction, Lanes, Part, Shape, ShapeError, Support};
 use stickslip_formats::nearest;
 
 use crate::error::FitError;
@@ -24,10 +26,19 @@ pub enum Parameter {
     MuF,
     /// d_tri, radius of the support tripod (m).
     TripodRadius,
-    /// x of the tripod's centre in the object frame (m).
+    /// x of the centre of friction in the object frame (m).
     CentreX,
     /// y of it.
     CentreY,
+    /// x of a vector that points in three times the angle by which the feet are turned. A third of
+    /// a turn changes nothing, so the vector has no angle at which a feet's turn jumps.
+    PhaseX,
+    /// y of it.
+    PhaseY,
+    /// ln of the factor by which the feet's triangle is stretched along x and shrunk along y.
+    StretchX,
+    /// ln of such a factor along the diagonal of x and y.
+    StretchXy,
     /// Factor of the object's outline.
     OutlineScale,
     /// Offset of the object's outline from the scene's along x, object frame (m).
@@ -42,8 +53,19 @@ pub enum Parameter {
     Latency,
 }
 
+/// Numbers of the support: any triangle of equal feet.
+const SUPPORT: &[Parameter] = &[
+    Parameter::TripodRadius,
+    Parameter::CentreX,
+    Parameter::CentreY,
+    Parameter::PhaseX,
+    Parameter::PhaseY,
+    Parameter::StretchX,
+    Parameter::StretchXy,
+];
+
 /// Parameters for each name on the command line.
-const GROUPS: [(&str, &[Parameter]); 9] = [
+const GROUPS: [(&str, &[Parameter]); 10] = [
     ("mu_s", &[Parameter::MuS]),
     ("mu_p", &[Parameter::MuP]),
     ("mu_f", &[Parameter::MuF]),
@@ -52,6 +74,7 @@ const GROUPS: [(&str, &[Parameter]); 9] = [
         "centre_of_friction",
         &[Parameter::CentreX, Parameter::CentreY],
     ),
+    ("support", SUPPORT),
     ("outline_scale", &[Parameter::OutlineScale]),
     (
         "outline_offset",
@@ -72,6 +95,10 @@ impl Parameter {
             Self::TripodRadius => "tripod_radius",
             Self::CentreX => "centre_of_friction_x",
             Self::CentreY => "centre_of_friction_y",
+            Self::PhaseX => "foot_phase_x",
+            Self::PhaseY => "foot_phase_y",
+            Self::StretchX => "foot_stretch_x",
+            Self::StretchXy => "foot_stretch_xy",
             Self::OutlineScale => "outline_scale",
             Self::OutlineX => "outline_offset_x",
             Self::OutlineY => "outline_offset_y",
@@ -86,6 +113,7 @@ impl Parameter {
     pub fn unit(self) -> &'static str {
         match self {
             Self::MuS | Self::MuP | Self::MuF | Self::OutlineScale => "",
+            Self::PhaseX | Self::PhaseY | Self::StretchX | Self::StretchXy => "",
             Self::Latency => "s",
             _ => "m",
         }
@@ -93,7 +121,7 @@ impl Parameter {
 
     /// Names that a list of free parameters may have.
     #[must_use]
-    pub fn known_names() -> [&'static str; 9] {
+    pub fn known_names() -> [&'static str; 10] {
         GROUPS.map(|(name, _)| name)
     }
 
@@ -114,7 +142,12 @@ impl Parameter {
         }
         let asked = |group: &&(&str, _)| names.iter().any(|name| name == group.0);
         let groups = GROUPS.iter().filter(asked);
-        let parameters: Vec<Self> = groups.flat_map(|(_, group)| *group).copied().collect();
+        let mut parameters: Vec<Self> = Vec::new();
+        for parameter in groups.flat_map(|(_, group)| *group) {
+            if !parameters.contains(parameter) {
+                parameters.push(*parameter);
+            }
+        }
         match parameters.is_empty() {
             true => Err(FitError::NothingFree {
                 known: known.join(", "),
@@ -123,27 +156,64 @@ impl Parameter {
         }
     }
 
-    /// Returns true if predictions with several values of it have one scene, but for friction.
+    /// The parameters of a list of names, by [`parse_list`](Self::parse_list); by
+    /// [`default_list`](Self::default_list) for `setup` where there are no names.
+    ///
+    /// # Errors
+    /// A name that is none.
+    pub fn list_or_default(names: &[String], setup: &Setup) -> Result<Vec<Self>, FitError> {
+        match names.is_empty() {
+            true => Ok(Self::default_list(setup)),
+            false => Self::parse_list(names),
+        }
+    }
+
+    /// The parameters that are free by default: μ_p, and all that `setup` leaves open of the
+    /// support.
+    #[must_use]
+    pub fn default_list(setup: &Setup) -> Vec<Self> {
+        let all = [&[Self::MuP], SUPPORT].concat();
+        let open = |free: &Self| free.prior(setup).is_open();
+        let has = |free: &Self| setup.has_tripod() || !free.is_of_support();
+        all.into_iter().filter(has).filter(open).collect()
+    }
+
+    /// Returns true if predictions with several values of it have one scene, but for friction and
+    /// support.
     pub(crate) fn keeps_scene(self) -> bool {
-        matches!(
-            self,
-            Self::MuS | Self::MuP | Self::MuF | Self::TripodRadius | Self::Latency
-        )
+        self.is_of_support() || matches!(self, Self::MuS | Self::MuP | Self::MuF | Self::Latency)
     }
 
-    /// Returns true if it is a number of the tripod.
-    pub(crate) fn needs_tripod(self) -> bool {
-        matches!(self, Self::TripodRadius | Self::CentreX | Self::CentreY)
+    /// Returns true if it is a number of the support.
+    pub(crate) fn is_of_support(self) -> bool {
+        SUPPORT.contains(&self)
     }
 
-    /// Writes it into friction parameters, if it is one.
-    pub(crate) fn apply_to_friction(self, friction: &mut Friction, value: f64) {
-        match self {
-            Self::MuS => friction.mu_s = value,
-            Self::MuP => friction.mu_p = value,
-            Self::MuF => friction.mu_f = value,
-            Self::TripodRadius => friction.d_tri = value,
-            _ => {}
+    /// Friction and image of the feet by the values of some parameters, from `nominal` on.
+    pub(crate) fn surface(values: &[(Self, f64)], nominal: Friction) -> Surface {
+        let mut friction = nominal;
+        let [mut centre, mut phase, mut stretch] = [[0.0; 2], [1.0, 0.0], [0.0; 2]];
+        for &(parameter, value) in values {
+            match parameter {
+                Self::MuS => friction.mu_s = value,
+                Self::MuP => friction.mu_p = value,
+                Self::MuF => friction.mu_f = value,
+                Self::TripodRadius => friction.d_tri = value,
+                Self::CentreX => centre[0] = value,
+                Self::CentreY => centre[1] = value,
+                Self::PhaseX => phase[0] = value,
+                Self::PhaseY => phase[1] = value,
+                Self::StretchX => stretch[0] = value,
+                Self::StretchXy => stretch[1] = value,
+                _ => {}
+            }
+        }
+        let turn = libm::atan2(phase[1], phase[0]) / 3.0;
+        let one = |x: f64| Lanes([x]);
+        let support = Support::new(centre.map(one), one(turn), stretch.map(one));
+        Surface {
+            friction,
+            support: support.map(|x| x.0[0]),
         }
     }
 
@@ -177,6 +247,11 @@ impl Parameter {
                 0.0,
                 open.centre_of_friction * setup.scene.object.gyration_radius(),
             ),
+            // any angle is a vector about zero, a known one about (1, 0)
+            Self::PhaseX | Self::PhaseY if open.tripod_angle >= FRAC_PI_3 => normal(0.0, 1.0),
+            Self::PhaseX => normal(1.0, 3.0 * open.tripod_angle),
+            Self::PhaseY => normal(0.0, 3.0 * open.tripod_angle),
+            Self::StretchX | Self::StretchXy => normal(0.0, open.foot_stretch),
             Self::OutlineScale => log_normal(1.0, SCALE_STD),
             Self::OutlineX | Self::OutlineY | Self::PusherX | Self::PusherY => {
                 normal(0.0, OFFSET_STD)
@@ -194,17 +269,10 @@ impl Parameter {
     /// # Errors
     /// An outline that is scaled or moved to where it is none.
     pub fn apply(values: &[(Self, f64)], setup: &mut Setup) -> Result<(), ShapeError> {
-        let mut centre = [0.0; 2];
         let mut object = Change::default();
         let mut pusher = Change::default();
-        let nominal = &mut setup.scene.nominal;
         for &(parameter, value) in values {
             match parameter {
-                Self::MuS | Self::MuP | Self::MuF | Self::TripodRadius => {
-                    parameter.apply_to_friction(nominal, value);
-                }
-                Self::CentreX => centre[0] = value,
-                Self::CentreY => centre[1] = value,
                 Self::OutlineScale => object.scale = value,
                 Self::OutlineX => object.offset[0] = value,
                 Self::OutlineY => object.offset[1] = value,
@@ -215,26 +283,17 @@ impl Parameter {
                         camera.latency = value.max(0.0);
                     }
                 }
+                _ => {}
             }
         }
-        if let (Feet::Tripod { angle }, true) = (setup.scene.feet, centre != [0.0; 2]) {
-            let radius = setup.scene.nominal.d_tri;
-            setup.scene.feet = Feet::Known {
-                positions: feet(angle, radius, centre),
-                loads: [1.0 / 3.0; 3],
-            };
+        let Surface { friction, support } = Self::surface(values, setup.scene.nominal);
+        setup.scene.nominal = friction;
+        if support != Support::default() {
+            setup.scene.feet = setup.scene.image_of_feet(&support);
         }
         object.apply(&mut setup.scene.object.shape)?;
         pusher.apply(&mut setup.scene.pusher.fingers[0])
     }
-}
-
-/// Feet 120° apart about `centre` (m).
-fn feet(angle: f64, radius: f64, [x, y]: [f64; 2]) -> [[f64; 2]; 3] {
-    [0.0, 1.0, -1.0].map(|turn| {
-        let (sin, cos) = libm::sincos(angle + turn * (2.0 / 3.0 * std::f64::consts::PI));
-        [x + radius * cos, y + radius * sin]
-    })
 }
 
 /// An outline scaled about the origin of its frame, then moved.

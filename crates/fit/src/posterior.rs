@@ -6,9 +6,10 @@
 use std::borrow::Cow;
 
 use rayon::prelude::*;
-use stickslip::NominalPrediction;
-use stickslip_dynamics::{Friction, ShapeError};
+use stickslip::{NominalPrediction, Surface};
+use stickslip_dynamics::ShapeError;
 
+use crate::coarsening::power;
 use crate::error::FitError;
 use crate::likelihood::{Noise, log_likelihood};
 use crate::parameter::Parameter;
@@ -17,7 +18,7 @@ use crate::progress::Progress;
 use crate::push::{Instant, PreparedPush};
 
 /// Vectors whose pushes are predicted side by side.
-pub(crate) const LANES: usize = 8;
+const LANES: usize = 8;
 
 /// Numbers of a vector that are no parameters.
 pub(crate) const NUISANCES: usize = 2;
@@ -75,12 +76,9 @@ impl<'a> Posterior<'a> {
         })
     }
 
-    /// Posterior of other free parameters by these pushes.
-    ///
-    /// # Errors
-    /// Those of [`Posterior::new`].
-    pub fn with_parameters(&self, parameters: &[Parameter]) -> Result<Self, FitError> {
-        Self::new(self.pushes.clone(), parameters, self.progress)
+    /// Power of the likelihood that the drift of a vector deserves.
+    pub fn power(&self, vector: &[f64]) -> f64 {
+        power(self.pushes.len(), self.noise(vector).drift)
     }
 
     /// Numbers of a vector.
@@ -99,28 +97,20 @@ impl<'a> Posterior<'a> {
         noise_of(&vector[self.parameters.len()..])
     }
 
-    /// Log-density of each vector, up to a constant; a vector far out of range has -∞.
-    pub fn log_densities(&self, vectors: &[Vec<f64>]) -> Vec<f64> {
+    /// Log-likelihood of each vector, up to a constant; a vector far out of range has -∞.
+    pub fn log_likelihoods(&self, vectors: &[Vec<f64>]) -> Vec<f64> {
         let chunks: Vec<&[Vec<f64>]> = vectors.chunks(LANES).collect();
         let pushes = self.pushes.len();
         self.progress.add(vectors.len());
         let jobs = (0..chunks.len() * pushes).into_par_iter();
-        let likelihoods: Vec<[f64; LANES]> = jobs
-            .map(|job| self.log_likelihoods(job % pushes, chunks[job / pushes]))
+        let of_pushes: Vec<[f64; LANES]> = jobs
+            .map(|job| self.of_push(job % pushes, chunks[job / pushes]))
             .collect();
-        let mut densities = Vec::with_capacity(vectors.len());
-        for (i, vector) in vectors.iter().enumerate() {
-            let of_pushes = &likelihoods[i / LANES * pushes..][..pushes];
-            let likelihood: f64 = of_pushes.iter().map(|lanes| lanes[i % LANES]).sum();
-            let prior: f64 = vector.iter().map(|z| -0.5 * z * z).sum();
-            densities.push(prior + likelihood);
-        }
-        densities
-    }
-
-    /// Log density of one vector.
-    pub fn log_density(&self, vector: &[f64]) -> f64 {
-        self.log_densities(&[vector.to_vec()])[0]
+        let likelihood = |i: usize| {
+            let of_pushes = &of_pushes[i / LANES * pushes..][..pushes];
+            of_pushes.iter().map(|lanes| lanes[i % LANES]).sum()
+        };
+        (0..vectors.len()).map(likelihood).collect()
     }
 
     /// Predictions of one push by each vector; an outline that is none has no prediction.
@@ -139,21 +129,19 @@ impl<'a> Posterior<'a> {
         let in_scene = |vector: &Vec<f64>| {
             let scene = setup(vector)?;
             let friction = scene.nominal;
-            let mut predictions = prepared.predictor.with_scene(scene).predict(&[friction]);
+            let mut predictions = prepared
+                .predictor
+                .with_scene(scene)
+                .predict(&[friction.into()]);
             Ok(predictions.remove(0))
         };
         if !self.side_by_side {
             return vectors.iter().map(in_scene).collect();
         }
-        let friction = |vector: &Vec<f64>| {
-            let mut friction = prepared.push.setup.scene.nominal;
-            for (parameter, value) in self.values(vector) {
-                parameter.apply_to_friction(&mut friction, value);
-            }
-            friction
-        };
-        let frictions: Vec<Friction> = vectors.iter().map(friction).collect();
-        let predictions = prepared.predictor.predict(&frictions);
+        let nominal = prepared.push.setup.scene.nominal;
+        let surface = |vector: &Vec<f64>| Parameter::surface(&self.values(vector), nominal);
+        let surfaces: Vec<Surface> = vectors.iter().map(surface).collect();
+        let predictions = prepared.predictor.predict(&surfaces);
         predictions.into_iter().map(Ok).collect()
     }
 
@@ -173,7 +161,8 @@ impl<'a> Posterior<'a> {
             .collect()
     }
 
-    fn log_likelihoods(&self, push: usize, vectors: &[Vec<f64>]) -> [f64; LANES] {
+    /// Log-likelihoods of one push by a few vectors.
+    fn of_push(&self, push: usize, vectors: &[Vec<f64>]) -> [f64; LANES] {
         let prepared = self.pushes[push];
         let radius = prepared.push.setup.virtual_radius();
         let mut likelihoods = [f64::NEG_INFINITY; LANES];
@@ -210,7 +199,7 @@ pub(crate) fn noise_of(nuisances: &[f64]) -> Noise {
 /// `first`.
 fn check(parameter: Parameter, first: &PreparedPush, push: &PreparedPush) -> Result<(), FitError> {
     let (name, prior) = (push.push.name.clone(), parameter.prior(&push.push.setup));
-    if parameter.needs_tripod() && !push.push.setup.has_tripod() {
+    if parameter.is_of_support() && !push.push.setup.has_tripod() {
         return Err(FitError::KnownFeet {
             push: name,
             parameter: parameter.name(),

@@ -36,6 +36,18 @@ impl Prior {
         }
     }
 
+    /// The whitened coordinate of a value.
+    #[must_use]
+    pub fn coordinate(&self, value: f64) -> f64 {
+        match *self {
+            Self::LogNormal {
+                median,
+                relative_std,
+            } => libm::log(value / median) / relative_std,
+            Self::Normal { mean, std } => (value - mean) / std,
+        }
+    }
+
     /// Its centre and the number that says how wide it is.
     pub(crate) fn guess(&self) -> (f64, f64) {
         match *self {

@@ -1,137 +1,232 @@
-//! The posterior by ensembles of Markov chains: [`sample`], stretch moves (Goodman & Weare 2010).
+//! The posterior by populations that cool from the prior: [`sample`], sequential Monte Carlo (Del
+//! Moral, Doucet & Jasra 2006) with moves of differential evolution (ter Braak 2006).
 //!
-//! Written here because the rollouts of half an ensemble run side by side in vector lanes; samplers
-//! that are to be had ask for one density at a time.
+//! Written here because the rollouts of half a population run side by side in vector lanes;
+//! samplers that are to be had ask for one density at a time.
 
 use stickslip_filter::{Draw, Streams};
 
 use crate::chain::Chain;
-use crate::posterior::{LANES, Posterior};
+use crate::posterior::Posterior;
 
-/// Largest stretch of a move.
-const STRETCH: f64 = 2.0;
+/// Independent populations, which must come to agree.
+const POPULATIONS: usize = 4;
 
-/// Independent ensembles, which must come to agree.
-const ENSEMBLES: usize = 4;
+/// Vectors of a population.
+const SIZE: usize = 256;
 
-/// Spreads at the start, in whitened coordinates: of the ensembles around the optimum, and of the
-/// walkers of one.
-const START_STDS: [f64; 2] = [0.5, 0.2];
+/// Best step of a random walk over the spread of a normal density in many dimensions, times the
+/// square root of their number (Roberts, Gelman & Gilks 1997).
+const BEST_STEP: f64 = 2.38;
 
-/// Step of the random streams at which moves begin; earlier ones start searches and walkers.
+/// Moves of which one goes by a whole difference, from mode to mode.
+const JUMP_EVERY: u64 = 5;
+
+/// Share of the vectors that one stage of cooling is to be worth.
+const WORTH: f64 = 0.5;
+
+/// Moves of every vector in a stage.
+const STAGE: usize = 10;
+
+/// Bisections of a power: a millionth is exact enough.
+const BISECTIONS: usize = 20;
+
+/// Most stages; the last one goes all the way.
+const MOST_STAGES: usize = 20;
+
+/// Step of the random streams at which moves begin; earlier ones start vectors and resample.
 const FIRST_MOVE: u64 = 1 << 32;
 
-/// Draws of one walker in one move: its partner, its stretch, whether it is accepted.
+/// Draws of one vector in one move: two others, whether it is accepted.
 const DRAWS: [u32; 3] = [0, 1, 2];
 
-/// Moves of every walker between two checks whether the chains have settled, and most rounds of
+/// Moves of every vector between two checks whether the populations agree, and most rounds of
 /// them.
-const ROUNDS: [usize; 2] = [100, 40];
+const ROUNDS: [usize; 2] = [20, 20];
 
 /// Moves and rounds where every vector has a scene of its own: its pushes are predicted one by one
 /// then, which takes ten times as long.
-const COSTLY_ROUNDS: [usize; 2] = [50, 12];
-
-/// Walkers of an ensemble for vectors of `dimension` numbers: at least two for each, and a multiple
-/// of two blocks of lanes.
-fn walkers(dimension: usize) -> usize {
-    (2 * dimension).div_ceil(2 * LANES) * 2 * LANES
-}
+const COSTLY_ROUNDS: [usize; 2] = [20, 4];
 
 /// Moves of a round, and most rounds.
-pub(crate) fn rounds(costly: bool) -> [usize; 2] {
+fn rounds(costly: bool) -> [usize; 2] {
     if costly { COSTLY_ROUNDS } else { ROUNDS }
 }
 
-/// Most vectors that are tried in so many rounds of so many moves.
-pub(crate) fn most_sampled(dimension: usize, [round, most_rounds]: [usize; 2]) -> u64 {
-    (ENSEMBLES * walkers(dimension) * (round * most_rounds + 1)) as u64
+/// Most vectors that are tried.
+pub(crate) fn most_sampled(costly: bool) -> u64 {
+    let [round, most_rounds] = rounds(costly);
+    (POPULATIONS * SIZE * (1 + STAGE * MOST_STAGES + round * most_rounds)) as u64
 }
 
-/// Samples `posterior` from around `start` until the second half of the chains has settled, by
-/// `settled` as split R̂, or for the most rounds; also the number of vectors tried.
-pub(crate) fn sample(
-    posterior: &Posterior<'_>,
-    start: &[f64],
-    settled: f64,
+/// Vectors with their densities.
+struct Populations<'a> {
+    posterior: &'a Posterior<'a>,
+    vectors: Vec<Vec<f64>>,
+    /// Log-likelihood of each.
+    likelihoods: Vec<f64>,
+    /// Power of the likelihood in the density.
+    power: f64,
     streams: Streams,
-) -> (Chain, u64) {
-    let dimension = posterior.dimension();
-    let count = ENSEMBLES * walkers(dimension);
-    let mut vectors: Vec<Vec<f64>> = (0..count)
-        .map(|walker| {
-            let ensemble = count + walker / walkers(dimension);
-            let normal = |of: usize, k: usize| streams.normal(1, of as u32, k as u32);
-            let [apart, within] = START_STDS;
-            (0..dimension)
-                .map(|k| start[k] + apart * normal(ensemble, k) + within * normal(walker, k))
-                .collect()
-        })
-        .collect();
-    let mut densities = posterior.log_densities(&vectors);
-    let mut chain = Chain::new(ENSEMBLES, count, dimension);
-    let mut moves = 0;
+    moves: u64,
+}
+
+/// Samples `posterior`: populations drawn from the prior cool to the power of the likelihood that
+/// their own drift deserves. Then they move until the second half of their ways agrees, by
+/// `settled` as split R̂, or for the most rounds. Also the number of vectors tried.
+pub(crate) fn sample(posterior: &Posterior<'_>, settled: f64, streams: Streams) -> (Chain, u64) {
+    let mut populations = Populations::from_prior(posterior, streams);
+    for stage in 1..=MOST_STAGES {
+        let end = posterior.power(&populations.mean());
+        if populations.power >= end {
+            break;
+        }
+        populations.cool(end, stage == MOST_STAGES);
+        for _ in 0..STAGE {
+            populations.make_move();
+        }
+    }
+
+    let mut chain = Chain::new(POPULATIONS, POPULATIONS * SIZE, posterior.dimension());
     let [round, most_rounds] = rounds(posterior.is_costly());
     for _ in 0..most_rounds {
         for _ in 0..round {
-            let mut accepted = 0;
-            let draw = streams.at(FIRST_MOVE + moves as u64);
-            for half in 0..2 {
-                accepted += move_half(posterior, &mut vectors, &mut densities, half, draw);
-            }
-            chain.push(&vectors, accepted);
-            moves += 1;
+            let accepted = populations.make_move();
+            chain.push(&populations.vectors, accepted);
         }
-        let second_half = chain.second_half();
-        if second_half.split_rhat() <= settled {
+        if chain.second_half().split_rhat() <= settled {
             break;
         }
     }
-    (chain.second_half(), (count * (moves + 1)) as u64)
+    let tried = (populations.moves + 1) * (POPULATIONS * SIZE) as u64;
+    (chain.second_half(), tried)
 }
 
-/// Moves one half of the walkers of each ensemble along lines to walkers of the other half; how
-/// many moved.
-fn move_half(
-    posterior: &Posterior<'_>,
-    vectors: &mut [Vec<f64>],
-    densities: &mut [f64],
-    half: usize,
-    draw: Draw,
-) -> usize {
-    let dimension = vectors[0].len();
-    let (own_size, count) = (walkers(dimension), walkers(dimension) / 2);
-    let moving: Vec<usize> = (0..vectors.len())
-        .filter(|walker| walker % own_size / count == half)
-        .collect();
-
-    // where each would go: x' = y + s (x - y), with a density of s proportional to 1/√s
-    let proposed: Vec<(Vec<f64>, f64)> = moving
-        .iter()
-        .map(|walker| {
-            let drawn = |i: u32| draw.uniform(*walker as u32, i);
-            let [partner, stretch] = [DRAWS[0], DRAWS[1]].map(drawn);
-            let others = walker / own_size * own_size + (1 - half) * count;
-            let partner = &vectors[others + (partner * count as f64) as usize];
-            let root = (1.0 + stretch * (STRETCH - 1.0)) / STRETCH.sqrt();
-            let s = root * root;
-            let stretched = vectors[*walker].iter().zip(partner);
-            (stretched.map(|(x, y)| y + s * (x - y)).collect(), s)
-        })
-        .collect();
-    let candidates: Vec<Vec<f64>> = proposed.iter().map(|(vector, _)| vector.clone()).collect();
-    let new = posterior.log_densities(&candidates);
-
-    // who goes
-    let mut accepted = 0;
-    for ((walker, new), (vector, s)) in moving.into_iter().zip(new).zip(proposed) {
-        let volume = (dimension - 1) as f64 * libm::log(s);
-        let chance = volume + new - densities[walker];
-        if libm::log(draw.uniform(walker as u32, DRAWS[2])) < chance {
-            vectors[walker] = vector;
-            densities[walker] = new;
-            accepted += 1;
+impl<'a> Populations<'a> {
+    fn from_prior(posterior: &'a Posterior<'a>, streams: Streams) -> Self {
+        let vector = |k: usize| -> Vec<f64> {
+            let numbers = 0..posterior.dimension();
+            numbers
+                .map(|i| streams.normal(1, k as u32, i as u32))
+                .collect()
+        };
+        let vectors: Vec<Vec<f64>> = (0..POPULATIONS * SIZE).map(vector).collect();
+        Self {
+            likelihoods: posterior.log_likelihoods(&vectors),
+            vectors,
+            posterior,
+            power: 0.0,
+            streams,
+            moves: 0,
         }
     }
-    accepted
+
+    fn mean(&self) -> Vec<f64> {
+        let count = self.vectors.len() as f64;
+        let mean = |k: usize| self.vectors.iter().map(|vector| vector[k]).sum::<f64>() / count;
+        (0..self.posterior.dimension()).map(mean).collect()
+    }
+
+    /// Raises the power, at most to `end`, and resamples each population.
+    fn cool(&mut self, end: f64, at_once: bool) {
+        let most = self.likelihoods.iter().copied().fold(f64::MIN, f64::max);
+        let weights = |power: f64| -> Vec<f64> {
+            let ratios = self.likelihoods.iter().map(|likelihood| likelihood - most);
+            ratios
+                .map(|ratio| libm::exp((power - self.power) * ratio))
+                .collect()
+        };
+        let worth = |power: f64| {
+            let weights = weights(power);
+            let sum: f64 = weights.iter().sum();
+            let squares: f64 = weights.iter().map(|w| w * w).sum();
+            sum * sum / squares / weights.len() as f64
+        };
+        let mut next = end;
+        if !at_once && worth(end) < WORTH {
+            // the worth falls with the power
+            let mut low = self.power;
+            for _ in 0..BISECTIONS {
+                let middle = 0.5 * (low + next);
+                match worth(middle) < WORTH {
+                    true => next = middle,
+                    false => low = middle,
+                }
+            }
+        }
+        let weights = weights(next);
+        let draw = self.streams.at(2 + self.moves);
+        let mut chosen = Vec::with_capacity(weights.len());
+        for population in 0..POPULATIONS {
+            let first = population * SIZE;
+            let offset = draw.uniform(population as u32, 0);
+            chosen.extend(systematic(&weights[first..][..SIZE], offset).map(|k| first + k));
+        }
+        self.vectors = chosen.iter().map(|k| self.vectors[*k].clone()).collect();
+        self.likelihoods = chosen.iter().map(|k| self.likelihoods[*k]).collect();
+        self.power = next;
+    }
+
+    /// Moves every vector once; how many moved.
+    fn make_move(&mut self) -> usize {
+        let draw = self.streams.at(FIRST_MOVE + self.moves);
+        self.moves += 1;
+        (0..2).map(|half| self.move_half(half, draw)).sum()
+    }
+
+    fn density(&self, vector: &[f64], likelihood: f64) -> f64 {
+        self.power * likelihood - 0.5 * vector.iter().map(|z| z * z).sum::<f64>()
+    }
+
+    /// Moves one half of each population by differences within the other half; how many moved.
+    fn move_half(&mut self, half: usize, draw: Draw) -> usize {
+        let count = SIZE / 2;
+        let moving: Vec<usize> = (0..self.vectors.len())
+            .filter(|k| k % SIZE / count == half)
+            .collect();
+
+        // where each would go: along the difference of two of the other half
+        let jump = match self.moves % JUMP_EVERY {
+            0 => 1.0,
+            _ => BEST_STEP / (2.0 * self.posterior.dimension() as f64).sqrt(),
+        };
+        let propose = |k: &usize| -> Vec<f64> {
+            let others = k / SIZE * SIZE + (1 - half) * count;
+            let [a, b] = [DRAWS[0], DRAWS[1]].map(|i| {
+                let drawn = draw.uniform(*k as u32, i) * count as f64;
+                &self.vectors[others + drawn as usize]
+            });
+            let numbers = self.vectors[*k].iter().zip(a.iter().zip(b));
+            numbers.map(|(x, (a, b))| x + jump * (a - b)).collect()
+        };
+        let candidates: Vec<Vec<f64>> = moving.iter().map(propose).collect();
+        let likelihoods = self.posterior.log_likelihoods(&candidates);
+
+        // who goes
+        let mut accepted = 0;
+        for ((k, likelihood), vector) in moving.into_iter().zip(likelihoods).zip(candidates) {
+            let before = self.density(&self.vectors[k], self.likelihoods[k]);
+            let chance = self.density(&vector, likelihood) - before;
+            if libm::log(draw.uniform(k as u32, DRAWS[2])) < chance {
+                self.vectors[k] = vector;
+                self.likelihoods[k] = likelihood;
+                accepted += 1;
+            }
+        }
+        accepted
+    }
+}
+
+/// Indices of a population of its size, drawn by weights (systematic resampling).
+fn systematic(weights: &[f64], offset: f64) -> impl Iterator<Item = usize> {
+    let total: f64 = weights.iter().sum();
+    let step = total / weights.len() as f64;
+    let (mut k, mut sum) = (0, weights[0]);
+    (0..weights.len()).map(move |i| {
+        while sum < (i as f64 + offset) * step && k + 1 < weights.len() {
+            k += 1;
+            sum += weights[k];
+        }
+        k
+    })
 }

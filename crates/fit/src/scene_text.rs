@@ -1,6 +1,8 @@
 //! A scene file with the learnt values: [`Fit::scene_text`].
 
-use stickslip::{Setup, counted};
+use std::f64::consts::SQRT_2;
+
+use stickslip::{Setup, Uncertainty, counted};
 use stickslip_dynamics::Feet;
 use stickslip_formats::{SceneEdit, read_scene};
 
@@ -61,19 +63,24 @@ impl Fit {
         if is(|p| matches!(p, Parameter::PusherX | Parameter::PusherY)) {
             edit.set_shape("pusher", &setup.scene.pusher.fingers[0]);
         }
-        if let (Feet::Known { positions, loads }, true) = (
-            setup.scene.feet,
-            is(|p| matches!(p, Parameter::CentreX | Parameter::CentreY)),
-        ) {
+        if let (Feet::Known { positions, loads }, true) =
+            (setup.scene.feet, is(Parameter::is_of_support))
+        {
             edit.set_feet(positions, loads);
             // given feet would be known exactly
-            let unknown = |key| ["uncertainty", key];
-            let spread = match self.sampling.settled {
-                true => self.spread_of_centre(&setup),
-                false => setup.uncertainty.centre_of_friction,
+            let unsure = match self.sampling.settled {
+                true => self.support_spreads(&setup),
+                false => setup.uncertainty,
             };
-            edit.set(&unknown("centre_of_friction"), spread);
-            edit.set(&unknown("tripod_angle"), setup.uncertainty.tripod_angle);
+            let spreads = [
+                ("d_tri", unsure.friction.d_tri),
+                ("centre_of_friction", unsure.centre_of_friction),
+                ("tripod_angle", unsure.tripod_angle),
+                ("foot_stretch", unsure.foot_stretch),
+            ];
+            for (key, spread) in spreads {
+                edit.set(&["uncertainty", key], spread);
+            }
         }
         if let (Some(camera), true) = (setup.camera, is(|p| p == Parameter::Latency)) {
             edit.set(&["camera", "latency"], camera.latency);
@@ -81,15 +88,34 @@ impl Fit {
         Ok(edit.text())
     }
 
-    /// Uncertainty of the centre of friction, on one axis, as a share of the radius of gyration.
-    fn spread_of_centre(&self, setup: &Setup) -> f64 {
-        let is_centre = |p| matches!(p, Parameter::CentreX | Parameter::CentreY);
-        let centre = self
-            .parameters
-            .iter()
-            .filter(|fitted| is_centre(fitted.parameter));
-        let variance: f64 = centre.map(|fitted| fitted.std * fitted.std / 2.0).sum();
-        variance.sqrt() / setup.scene.object.gyration_radius()
+    /// Uncertainty of the support after the fit; what was not free keeps that of `setup`.
+    fn support_spreads(&self, setup: &Setup) -> Uncertainty {
+        use Parameter::{CentreX, CentreY, PhaseX, PhaseY, StretchX, StretchXy, TripodRadius};
+        let of = |parameter| {
+            self.parameters
+                .iter()
+                .find(|fitted| fitted.parameter == parameter)
+        };
+        let both = |one, other| {
+            let [one, other] = [of(one)?, of(other)?];
+            Some(libm::hypot(one.std, other.std) / SQRT_2)
+        };
+        let mut unsure = setup.uncertainty;
+        if let Some(fitted) = of(TripodRadius) {
+            unsure.friction.d_tri = fitted.std / fitted.value;
+        }
+        if let Some(std) = both(CentreX, CentreY) {
+            unsure.centre_of_friction = std / setup.scene.object.gyration_radius();
+        }
+        if let Some(std) = both(StretchX, StretchXy) {
+            unsure.foot_stretch = std;
+        }
+        if let (Some(x), Some(y), Some(std)) = (of(PhaseX), of(PhaseY), both(PhaseX, PhaseY)) {
+            // to first order, of an angle three times as large
+            let turn = std / libm::hypot(x.value, y.value) / 3.0;
+            unsure.tripod_angle = turn.min(unsure.tripod_angle);
+        }
+        unsure
     }
 
     /// Comments on the parameters that were learnt, for people.

@@ -1,7 +1,8 @@
 //! Accuracy of a fit on pushes that it has not seen: [`cross_validate`].
 
 use serde::Serialize;
-use stickslip::{Method, RunOptions, Setup, quantile, run};
+use stickslip::{Estimate, Method, NominalPrediction, RunOptions, Setup, quantile, run, wrapped};
+use stickslip_dynamics::Pose;
 use stickslip_evaluation::{Reference, Scores, score};
 use stickslip_filter::{Draw, Streams};
 use stickslip_formats::{Experiment, TruthFacts};
@@ -29,14 +30,14 @@ pub struct CrossValidation {
     pub folds: usize,
     /// Each push.
     pub pushes: Vec<HeldOut>,
-    /// Medians over the pushes of the final position error (mm): unfitted scene, fitted scene.
+    /// Medians over the pushes of the final position error (mm): unfitted scene, posterior median.
     pub median_final_mm: [f64; 2],
-    /// Medians over the pushes of the WMSE over all rows (mm): unfitted scene, fitted scene.
+    /// Medians over the pushes of the WMSE over all rows (mm): unfitted scene, posterior median.
     pub median_wmse_mm: [f64; 2],
     /// Share of final x, y and θ within the 90 % interval predicted for them.
     pub coverage_90: f64,
-    /// Gain of the fitted scene over the unfitted one, in the final position error plus the WMSE
-    /// (mm): mean over the pushes, and its standard error.
+    /// Gain of the posterior median over the unfitted scene, in the final position error plus the
+    /// WMSE (mm): mean over the pushes, and its standard error.
     pub gain_mm: [f64; 2],
     /// True if that mean is above 0. If it is not, a scene keeps its first guesses.
     pub pays: bool,
@@ -49,9 +50,10 @@ pub struct HeldOut {
     pub push: String,
     /// The fold that it is in, from 0.
     pub fold: usize,
-    /// Final position error of the unfitted and the fitted scene (mm).
+    /// Final position error of the unfitted scene, and of the median prediction of the posterior
+    /// (mm).
     pub final_mm: [f64; 2],
-    /// WMSE over all rows of the unfitted and the fitted scene (mm).
+    /// WMSE over all rows of both (mm).
     pub wmse_mm: [f64; 2],
     /// True for each of x, y and θ whose last measured value lies in the 90 % interval predicted
     /// for it.
@@ -82,7 +84,7 @@ pub fn cross_validate(
     let most = options.most_vectors();
     let before = |fold: usize| fold as u64 * most;
     let all = before(folds);
-    let prepared = prepare(pushes, &Progress::new(&|_, _| progress(0, all), most))?;
+    let (prepared, _) = prepare(pushes, &Progress::new(&|_, _| progress(0, all), most))?;
     let least = if folds < 3 { 4 } else { 3.max(folds) };
     if folds < 2 || prepared.len() < least {
         return Err(FitError::TooFewPushes {
@@ -178,12 +180,22 @@ fn predict_held_out(
     options: &FitOptions,
     progress: &Progress<'_>,
 ) -> Result<HeldOut, FitError> {
-    let mut fitted = push.push.setup.clone();
+    let posterior = Posterior::new(vec![push], &options.parameters, progress)?;
+    let predictions = posterior.predictions(0, &fit.samples).into_iter();
+    let predictions = predictions.collect::<Result<Vec<_>, _>>()?;
+
+    let unfitted = &push.push.setup;
+    let mut fitted = unfitted.clone();
     fit.apply(&mut fitted)?;
-    let unfitted = scores(push, &push.push.setup)?;
-    let fitted = scores(push, &fitted)?;
+    let mut estimate = nominal_estimate(push, unfitted)?;
+    let of_unfitted = scores(push, unfitted, &estimate);
+    for (row, pose) in estimate.rows.iter_mut().zip(median_poses(&predictions)) {
+        row.pose = Some(pose);
+    }
+    let of_fitted = scores(push, &fitted, &estimate);
+
     let of = |score: fn(&Scores) -> Option<f64>| {
-        [&unfitted, &fitted].map(|scores| score(scores).unwrap_or(f64::NAN))
+        [&of_unfitted, &of_fitted].map(|scores| score(scores).unwrap_or(f64::NAN))
     };
     let draw = Streams::new(options.seed).at(FIRST_NOISE + index as u64);
     Ok(HeldOut {
@@ -191,54 +203,73 @@ fn predict_held_out(
         fold,
         final_mm: of(|scores| scores.final_error_mm),
         wmse_mm: of(|scores| scores.wmse_mm),
-        covered: covered(push, fit, options, draw, progress)?,
+        covered: covered(push, &posterior, &fit.samples, &predictions, draw),
     })
 }
 
-/// Scores of the nominal simulation of `setup` against the measured poses, as it understands them.
-fn scores(push: &PreparedPush, setup: &Setup) -> Result<Scores, FitError> {
-    let log = &push.push.log;
+/// The nominal simulation of `setup`.
+fn nominal_estimate(push: &PreparedPush, setup: &Setup) -> Result<Estimate, FitError> {
     let options = RunOptions {
         method: Method::Nominal,
         ..RunOptions::default()
     };
-    let run = run(setup, log, &options, &mut |_| ()).map_err(|source| FitError::Run {
-        push: push.push.name.clone(),
-        source,
-    })?;
+    let run =
+        run(setup, &push.push.log, &options, &mut |_| ()).map_err(|source| FitError::Run {
+            push: push.push.name.clone(),
+            source,
+        })?;
+    Ok(run.estimate)
+}
+
+/// Median of several predictions, row by row and axis by axis. A push that may end in two ways has
+/// a mean where it never ends.
+fn median_poses(predictions: &[NominalPrediction]) -> Vec<Pose> {
+    let median = |row: usize| {
+        let first = predictions[0].poses[row];
+        let of = |axis: &dyn Fn(Pose) -> f64| {
+            let poses = predictions.iter().map(|prediction| prediction.poses[row]);
+            let values: Vec<f64> = poses.map(axis).collect();
+            quantile(&values, 0.5).expect("there are predictions")
+        };
+        Pose::new(
+            of(&|pose| pose.x),
+            of(&|pose| pose.y),
+            first.theta + of(&|pose| wrapped(pose.theta - first.theta)),
+        )
+    };
+    (0..predictions[0].poses.len()).map(median).collect()
+}
+
+/// Scores of an estimate against the measured poses, as `setup` understands them.
+fn scores(push: &PreparedPush, setup: &Setup, estimate: &Estimate) -> Scores {
     let experiment = Experiment {
         setup: setup.clone(),
-        log: log.clone(),
+        log: push.push.log.clone(),
         truth: None,
         facts: TruthFacts::default(),
     };
-    let (reference, hidden) = (Reference::measured(&experiment), vec![false; log.len()]);
-    Ok(score(
-        &run.estimate,
-        &reference,
-        &hidden,
-        setup.virtual_radius(),
-    ))
+    let hidden = vec![false; experiment.log.len()];
+    let reference = Reference::measured(&experiment);
+    score(estimate, &reference, &hidden, setup.virtual_radius())
 }
 
-/// Checks, axis by axis, whether the last measured pose lies in the intervals predicted for it.
+/// Checks, axis by axis, whether the last measured pose lies in the intervals that the samples,
+/// each with its prediction, give for it.
 fn covered(
     push: &PreparedPush,
-    fit: &Fit,
-    options: &FitOptions,
+    posterior: &Posterior<'_>,
+    samples: &[Vec<f64>],
+    predictions: &[NominalPrediction],
     draw: Draw,
-    progress: &Progress<'_>,
-) -> Result<[bool; 3], FitError> {
-    let posterior = Posterior::new(vec![push], &options.parameters, progress)?;
+) -> [bool; 3] {
     let radius = push.push.setup.virtual_radius();
     let mut errors: [Vec<f64>; 3] = Default::default();
-    let predictions = posterior.predictions(0, &fit.samples);
-    for (sample, prediction) in predictions.into_iter().enumerate() {
-        let instants = posterior.instants(0, &fit.samples[sample]);
+    for (sample, (vector, prediction)) in samples.iter().zip(predictions).enumerate() {
+        let instants = posterior.instants(0, vector);
         let travelled = instants.last().map_or(0.0, |instant| instant.travelled);
-        let residuals = push.residuals(&instants, &prediction?);
+        let residuals = push.residuals(&instants, prediction);
         let last = residuals.last().expect("a prepared push has a pose");
-        let noise = posterior.noise(&fit.samples[sample]);
+        let noise = posterior.noise(vector);
         for k in 0..NOISE_DRAWS {
             let number = (sample * NOISE_DRAWS + k) as u32;
             let stray = draw.uniform(number, 0) < STRAY_SHARE;
@@ -255,10 +286,10 @@ fn covered(
         }
     }
     // the pose is covered where an error of zero is
-    Ok(errors.map(|errors| {
+    errors.map(|errors| {
         let [low, high] = INTERVAL.map(|q| quantile(&errors, q).expect("there are samples"));
         low <= 0.0 && 0.0 <= high
-    }))
+    })
 }
 
 /// A number of Student's t distribution with [`FREEDOM`] degrees of freedom.

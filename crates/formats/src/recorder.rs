@@ -18,6 +18,7 @@ pub struct CsvRecorder<W: Write> {
 
 /// Writes rows as a recording of ROS 2 messages.
 pub struct McapRecorder<W: Write + Seek> {
+    fingers: usize,
     messages: LogMessages<W>,
     sensors: usize,
 }
@@ -56,12 +57,16 @@ impl<W: Write + Seek> McapRecorder<W> {
     /// that its bodies may have.
     ///
     /// # Errors
-    /// Those of `writer`; a hand of several fingers.
+    /// Those of `writer`.
     pub fn new(writer: W, scene: &Scene) -> Result<Self, McapWriteError> {
         let (sensors, fingers) = (scene.sensors(), scene.pusher.fingers.len() - 1);
         let log = one_row(&Row::default(), sensors, fingers);
         let messages = LogMessages::new(writer, &log, &Topics::default())?;
-        Ok(Self { messages, sensors })
+        Ok(Self {
+            fingers,
+            messages,
+            sensors,
+        })
     }
 
     /// Writes a row into the chunk at hand.
@@ -69,7 +74,8 @@ impl<W: Write + Seek> McapRecorder<W> {
     /// # Errors
     /// A time that a stamp cannot hold, or what the writer says.
     pub fn write(&mut self, row: &Row) -> Result<(), McapWriteError> {
-        self.messages.write(&one_row(row, self.sensors, 0))
+        self.messages
+            .write(&one_row(row, self.sensors, self.fingers))
     }
 
     /// Ends the chunk at hand and writes it, up to the operating system: data written by then can

@@ -1,4 +1,4 @@
-//! The choice of vector instructions at run time: [`on_widest`], [`on_vectors`].
+//! The choice of vector instructions at run time: [`on_widest`], [`on_lanes`].
 
 use fearless_simd::Level;
 #[cfg(target_arch = "x86_64")]
@@ -50,4 +50,15 @@ pub fn on_fused<R>(level: Level, work: impl FnOnce() -> R) -> R {
     }
     let _ = level;
     work()
+}
+
+/// Part of the work on chunks of `W` particles: [`on_fused`] for one, [`on_vectors`] for eight,
+/// [`on_widest`] for other numbers. `None` where eight lanes are not compiled.
+#[inline(always)]
+pub fn on_lanes<const W: usize, R>(level: Level, work: impl FnOnce() -> R) -> Option<R> {
+    match W {
+        1 => Some(on_fused(level, work)),
+        8 => on_vectors(level, work),
+        _ => Some(on_widest(level, work)),
+    }
 }

@@ -16,7 +16,7 @@ mod polynomial;
 mod trig;
 
 pub use box_muller::box_muller;
-pub use dispatch::{on_fused, on_vectors, on_widest};
+pub use dispatch::{on_fused, on_lanes, on_vectors, on_widest};
 pub use exp::exponentials;
 pub use fearless_simd::Level;
 pub use lanes::Lanes;

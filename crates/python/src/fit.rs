@@ -43,13 +43,16 @@ pub fn fit<'py>(
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Fitted<'py>> {
     let options = options.0;
-    let parameters = Parameter::parse_list(&options.free).map_err(refused)?;
-    let fit_options = FitOptions {
-        parameters,
-        seed: options.seed,
-    };
     let scene = pushes.first().map(|(_, scene, _)| scene.clone());
     let pushes: Vec<Push> = pushes.into_iter().map(push_of).collect::<PyResult<_>>()?;
+    let parameters = match pushes.first() {
+        Some(first) => Parameter::list_or_default(&options.free, &first.setup),
+        None => Ok(Vec::new()), // too few pushes
+    };
+    let fit_options = FitOptions {
+        parameters: parameters.map_err(refused)?,
+        seed: options.seed,
+    };
     let folds = options.folds.unwrap_or(default_folds(pushes.len()));
     let threads = Threads {
         asked: options.threads,

@@ -12,6 +12,7 @@ mod fit;
 mod given;
 mod log;
 mod long_call;
+mod page;
 mod particles;
 mod program;
 mod rollout;
@@ -39,6 +40,9 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(filter::check, module)?)?;
     module.add_function(wrap_pyfunction!(filter::filter, module)?)?;
     module.add_function(wrap_pyfunction!(fit::fit, module)?)?;
+    module.add_function(wrap_pyfunction!(page::comparison_page, module)?)?;
+    module.add_function(wrap_pyfunction!(page::player, module)?)?;
+    module.add_function(wrap_pyfunction!(page::report, module)?)?;
     module.add_function(wrap_pyfunction!(particles::particles, module)?)?;
     module.add_function(wrap_pyfunction!(program::program, module)?)?;
     module.add_function(wrap_pyfunction!(rollout::rollout, module)?)?;

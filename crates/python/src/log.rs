@@ -1,5 +1,5 @@
 //! Logs: [`read_log`], [`bag_info`], [`log_files`], [`write_log`], and the log that a dict of
-//! columns holds, [`log_of`].
+//! columns holds, [`log_of`]; the truth likewise, [`truth_of`].
 
 use std::path::PathBuf;
 
@@ -7,7 +7,8 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use stickslip::Log;
 use stickslip_formats::{
-    BagOptions, LogWarning, TopicMapping, Topics, log_columns, log_of_columns, read_mounts,
+    BagOptions, LogWarning, TopicMapping, Topics, Truth, log_columns, log_of_columns, read_mounts,
+    truth_of_columns,
 };
 
 use crate::columns::{Columns, to_dict};
@@ -74,4 +75,10 @@ pub fn log_of(columns: &Bound<'_, PyDict>) -> PyResult<Log> {
     let warnings: Vec<String> = warnings.iter().map(LogWarning::to_string).collect();
     warn(columns.py(), &warnings)?;
     Ok(log)
+}
+
+/// The truth that a dict of columns holds.
+pub fn truth_of(columns: &Bound<'_, PyDict>) -> PyResult<Truth> {
+    let held = Columns::of(columns)?;
+    truth_of_columns(&held.named()?).map_err(refused)
 }

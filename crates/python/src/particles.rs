@@ -15,7 +15,7 @@ use crate::run_options::RunArguments;
 use crate::scene::Scene;
 
 /// Columns that are kept of a particle: the weight, the pose and the friction.
-const NAMES: [&str; 8] = ["weight", "x", "y", "theta", "mu_s", "mu_p", "mu_f", "d_tri"];
+pub const NAMES: [&str; 8] = ["weight", "x", "y", "theta", "mu_s", "mu_p", "mu_f", "d_tri"];
 
 /// Keeps the particles after some rows.
 #[derive(Debug)]
@@ -45,15 +45,20 @@ impl Observer for Keeper {
         let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
         let Kept { rows, columns } = &mut *kept;
         rows.push(row);
-        for (particle, weight) in particles.weights().iter().enumerate() {
-            let (pose, friction) = (particles.pose(particle), particles.friction(particle));
-            let numbers = [weight]
-                .into_iter()
-                .chain(pose.fields())
-                .chain(friction.fields());
-            for (column, number) in columns.iter_mut().zip(numbers) {
-                column.push(*number);
-            }
+        push_particles(columns, particles);
+    }
+}
+
+/// Appends the particles to the columns of [`NAMES`].
+pub fn push_particles(columns: &mut [Vec<f64>; NAMES.len()], particles: &ParticleView<'_>) {
+    for (particle, weight) in particles.weights().iter().enumerate() {
+        let (pose, friction) = (particles.pose(particle), particles.friction(particle));
+        let numbers = [weight]
+            .into_iter()
+            .chain(pose.fields())
+            .chain(friction.fields());
+        for (column, number) in columns.iter_mut().zip(numbers) {
+            column.push(*number);
         }
     }
 }

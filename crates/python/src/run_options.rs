@@ -11,8 +11,8 @@ use crate::error::refused;
 pub struct RunArguments {
     method: String,
     model: String,
-    particles: usize,
-    seed: u64,
+    pub particles: usize,
+    pub seed: u64,
     tactile: bool,
     causal: bool,
     substeps: Option<u32>,

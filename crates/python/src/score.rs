@@ -3,12 +3,12 @@
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use stickslip_evaluation::{Reference, Scores, score as score_against};
-use stickslip_formats::{Experiment, TruthFacts, estimate_of_columns, truth_of_columns};
+use stickslip_formats::{Experiment, TruthFacts, estimate_of_columns};
 
 use crate::columns::Columns;
 use crate::error::refused;
 use crate::given::Given;
-use crate::log::log_of;
+use crate::log::{log_of, truth_of};
 use crate::run_options::RunArguments;
 use crate::scene::Scene;
 
@@ -35,13 +35,7 @@ pub fn score<'py>(
     let setup = &on.scene.get().setup;
     let held = Columns::of(estimate)?;
     let estimate = estimate_of_columns(&held.named()?).map_err(refused)?;
-    let truth = match &on.truth {
-        Some(columns) => {
-            let held = Columns::of(columns)?;
-            Some(truth_of_columns(&held.named()?).map_err(refused)?)
-        }
-        None => None,
-    };
+    let truth = on.truth.as_ref().map(truth_of).transpose()?;
     let facts = TruthFacts {
         first_pusher_contact: on.first_pusher_contact,
         ..TruthFacts::default()
@@ -55,6 +49,11 @@ pub fn score<'py>(
 }
 
 fn to_scores<'py>(py: Python<'py>, scores: &Scores) -> PyResult<Bound<'py, PyDict>> {
+    // of the rows that the errors are of
+    let belief = match scores.wmse_occluded_mm {
+        Some(_) => scores.belief_occluded,
+        None => scores.belief,
+    };
     let named = [
         ("wmse_mm", scores.wmse_mm),
         ("wmse_occluded_mm", scores.wmse_occluded_mm),
@@ -62,6 +61,8 @@ fn to_scores<'py>(py: Python<'py>, scores: &Scores) -> PyResult<Bound<'py, PyDic
         ("spread_occluded_mm", scores.spread_occluded_mm),
         ("final_error_mm", scores.final_error_mm),
         ("final_error_deg", scores.final_error_deg),
+        ("covered_90", belief.covered),
+        ("crps_mm", belief.crps_mm),
     ];
     let dict = PyDict::new(py);
     for (name, value) in named {

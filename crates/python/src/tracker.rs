@@ -10,9 +10,11 @@ use stickslip_dynamics::Pose;
 use stickslip_evaluation::LearningFriction;
 use stickslip_formats::estimate_columns;
 
+use crate::columns::to_dict;
 use crate::error::{refused, warn};
 use crate::filter::observed;
 use crate::given::{Given, Reading};
+use crate::particles::{NAMES, push_particles};
 use crate::run_options::{model, touch};
 use crate::scene::Scene;
 
@@ -33,6 +35,7 @@ fn covariance([x, y, theta, x_y, x_theta, y_theta]: [f64; 6]) -> PoseCovariance 
 #[pyclass(frozen, module = "stickslip._native")]
 pub struct Tracker(Mutex<State>);
 
+#[derive(Clone)]
 struct State {
     tracker: stickslip::Tracker<'static>,
     learning: LearningFriction,
@@ -139,6 +142,16 @@ impl Tracker {
         observed(py, &self.with(py, |state| state.learning.parameters()))
     }
 
+    /// The particles after the latest row, by the names of columns; none before the first pose.
+    fn particles<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        to_dict(py, self.with(py, |state| state.particles()))
+    }
+
+    /// A tracker that goes on by itself.
+    fn copy(&self, py: Python<'_>) -> Self {
+        Self(Mutex::new(self.with(py, |state| state.clone())))
+    }
+
     /// ln of the evidence of the rows so far.
     #[getter]
     fn log_evidence(&self, py: Python<'_>) -> f64 {
@@ -172,6 +185,14 @@ impl State {
             }
         }
         new
+    }
+
+    fn particles(&self) -> Vec<(String, Vec<f64>)> {
+        let mut columns: [Vec<f64>; NAMES.len()] = Default::default();
+        if let Some(particles) = self.tracker.particles() {
+            push_particles(&mut columns, &particles);
+        }
+        NAMES.map(str::to_owned).into_iter().zip(columns).collect()
     }
 
     /// The latest row alone.

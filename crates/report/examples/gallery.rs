@@ -15,9 +15,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         .unwrap_or_else(|| "gallery".to_owned());
     std::fs::create_dir_all(&folder)?;
     let figures = [
-        ("errors", errors().to_svg()),
-        ("parameters", parameters().to_svg()),
-        ("poses", poses()?.to_svg()),
+        ("errors", errors().drawing().to_svg()),
+        ("parameters", parameters().drawing().to_svg()),
+        ("poses", poses()?.drawing().to_svg()),
     ];
     for (name, svg) in figures {
         std::fs::write(
@@ -153,7 +153,7 @@ fn parameters() -> TimeFigure {
 fn poses() -> Result<Overlay, Box<dyn std::error::Error>> {
     let scene = scene()?;
     let body = |name: &str, pose: Pose, colour| Body::new(name, &scene.object.shape, &pose, colour);
-    let mut bodies = Body::surroundings(&scene, Some(&Pose::new(-0.04, 0.0, 0.0)));
+    let mut bodies = Body::surroundings(&scene, &[Some(Pose::new(-0.04, 0.0, 0.0))]);
     bodies.extend([
         body("truth", Pose::new(0.0, 0.0, 0.1), Colour::INK).filled(0.12),
         body("nominal", Pose::new(0.004, 0.003, 0.4), Colour::GREY),

@@ -84,12 +84,14 @@ class Player {
       add(group, "text", { transform: place, dy: "0.35em" }).textContent = k + 1;
       return group;
     });
-    this.pusher = addBody(world, data.pusher, "pusher");
+    this.fingers = data.fingers.map((finger) => addBody(world, finger, "pusher"));
     this.ghosts = data.methods.map((method) => {
       const ghost = addBody(world, data.object, "ghost", method.colour);
       if (method.dashes) ghost.lastChild.style.strokeDasharray = method.dashes;
       return ghost;
     });
+    // in the order of their contacts
+    this.bodies = [this.fingers[0], ...this.fixels, ...this.fingers.slice(1)];
     for (const k of data.order) world.append(this.ghosts[k]);
     const length = [50, 20, 10, 5, 2, 1].find((mm) => mm <= 0.15 * width) ?? 1;
     const bar = add(this.svg, "g", { class: "scale" });
@@ -198,8 +200,7 @@ class Player {
     const scrub = (event) => {
       const box = strip.getBoundingClientRect();
       const time = this.data.time[0] + ((event.clientX - box.left) / box.width) * (this.data.time[this.rows - 1] - this.data.time[0]);
-      const row = this.data.time.findIndex((t) => t >= time);
-      this.jump(row < 0 ? this.rows - 1 : row);
+      this.seek(time / 1000);
     };
     strip.addEventListener("pointerdown", (event) => (strip.setPointerCapture(event.pointerId), scrub(event)));
     strip.addEventListener("pointermove", (event) => event.buttons && scrub(event));
@@ -213,6 +214,17 @@ class Player {
       event.preventDefault();
     });
     addEventListener("resize", () => this.arrangeMarks());
+  }
+
+  /** Time shown (s). */
+  get time() {
+    return this.data.time[this.row] / 1000;
+  }
+
+  /** Stops and shows the row at a time (s). */
+  seek(time) {
+    const row = this.data.time.findIndex((t) => t >= 1000 * time - 0.5);
+    this.jump(row < 0 ? this.rows - 1 : row);
   }
 
   /** Stops and shows a row. */
@@ -252,7 +264,7 @@ class Player {
     const blind = data.hidden[row] === 1;
     this.stage.classList.toggle("blind", blind);
     moveTo(this.truth, ...at(data.truth, row));
-    moveTo(this.pusher, ...at(data.pusherPose, row));
+    this.fingers.forEach((finger, k) => moveTo(finger, ...at(data.fingerPoses[k], row)));
     data.methods.forEach((method, k) => {
       moveTo(this.ghosts[k], ...at(method.pose, row));
       const cloud = method.cloud ? method.cloud[row] : [];
@@ -272,6 +284,7 @@ class Player {
     this.slider.setAttribute("aria-valuetext", `${seconds} s, ${camera}`);
     this.head.setAttribute("d", `M${this.place(row)} 0V100`);
     this.root.dataset.row = row;
+    this.root.dispatchEvent(new CustomEvent("time", { detail: this.time }));
     this.zoom(row);
   }
 
@@ -286,7 +299,7 @@ class Player {
       if (guess !== null) words.push(`${this.guesser.name}: ${guess} %`);
       this.chips[k].words.textContent = words.filter((word) => word !== null).join(" · ") || "not known";
       this.chips[k].item.classList.toggle("touching", touches);
-      const body = k === 0 ? this.pusher : this.fixels[k - 1];
+      const body = this.bodies[k];
       body.classList.toggle("touching", touches);
       body.style.setProperty("--guess", (guess ?? 0) / 100);
     });
@@ -306,4 +319,4 @@ class Player {
   }
 }
 
-document.querySelectorAll(".player:not(.live)").forEach((root) => new Player(root));
+const players = [...document.querySelectorAll(".player:not(.live)")].map((root) => new Player(root));

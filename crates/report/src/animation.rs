@@ -47,7 +47,15 @@ impl ReportedExperiment<'_> {
         let animation = Animation::of(self);
         let scene = &self.setup.scene;
         let truth: Vec<_> = animation.poses(|row| self.reference.pose_at(self.time_of(row)));
-        let pusher = animation.poses(|row| self.log.pusher.get(row).copied().flatten());
+        let fingers = scene.pusher.fingers.iter().zip(self.log.fingers());
+        let fingers: Vec<_> = fingers
+            .map(|(shape, poses)| {
+                (
+                    shape,
+                    animation.poses(|row| poses.get(row).copied().flatten()),
+                )
+            })
+            .collect();
         let of_run = |run: &ReportedRun| {
             animation.poses(|row| run.scored.estimate.rows.get(row).and_then(|row| row.pose))
         };
@@ -73,7 +81,7 @@ impl ReportedExperiment<'_> {
                 rect width=(px(wide)) height=(px(high)) fill=(OFF) { (off) }
                 path d=(grid_lines(animation.corner, animation.scale, TABLE)) stroke="#8a8794" stroke-opacity="0.25" fill="none" {}
                 (animation.filled(shape, &truth, "0.45"))
-                (animation.filled(&scene.pusher.fingers[0], &pusher, "0.9"))
+                @for (finger, poses) in &fingers { (animation.filled(finger, poses, "0.9")) }
                 @for fixel in &scene.fixels { (animation.filled(&fixel.shape, &[fixel.pose], "0.9")) }
                 @for particle in &particles { (particle) }
                 @for run in drawn { (animation.outline(shape, &of_run(run), thick(run))) }
@@ -124,7 +132,7 @@ impl Animation {
         let every = (to - from).div_ceil(FRAMES).max(1);
         let rows: Vec<usize> = (from..to).step_by(every).chain([to]).collect();
 
-        // the fixels and the whole way of pusher and object are in the picture
+        // the fixels and the whole way of fingers and object are in the picture
         let shape = &experiment.setup.scene.object.shape;
         let outline = Outline::new(shape);
         let poses = rows

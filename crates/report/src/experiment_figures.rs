@@ -5,7 +5,6 @@ use stickslip_evaluation::LearnedParameter;
 
 use crate::axis::Scale;
 use crate::colour::{Colour, Line};
-use crate::contact_timeline::{ContactEstimate, ContactLane, ContactTimeline};
 use crate::curves::{
     FRICTION_PARAMETERS, FrictionParameter, PoseError, friction_curves, friction_panels,
     pose_errors,
@@ -16,7 +15,7 @@ use crate::overlay::{Body, Overlay};
 use crate::particle_cloud::ParticleCloud;
 use crate::reported_experiment::ReportedExperiment;
 use crate::reported_run::ReportedRun;
-use crate::time_figure::{Curve, Panel, TimeFigure};
+use crate::time_figure::{Bars, Curve, Panel, TimeFigure};
 use crate::touch::TouchRule;
 
 /// Smallest error drawn (mm, degrees).
@@ -37,10 +36,16 @@ impl Figure {
     /// A drawing with its name and caption.
     #[must_use]
     pub fn new(name: &'static str, drawing: Drawing, caption: impl Into<String>) -> Self {
+        let caption = caption.into();
+        let label = match drawing.label.is_empty() {
+            true => caption.clone(),
+            false => drawing.label,
+        };
+        let drawing = Drawing { label, ..drawing };
         Self {
             name,
             drawing,
-            caption: caption.into(),
+            caption,
         }
     }
 }
@@ -64,8 +69,7 @@ impl ReportedExperiment<'_> {
             self.poses(),
             "Object and estimates at the first contact with a fixel and at the end. Thin outlines: particles. An estimate far off may be outside the picture.",
         );
-        let timeline = self.contact_timeline();
-        let contacts = timeline.tells().then(|| {
+        let contacts = self.contact_timeline().map(|timeline| {
             let rule = TouchRule::measured(self.setup);
             let text = format!("Contacts of the object against time: {}.", rule.words());
             Figure::new("contacts", timeline.drawing(), &text)
@@ -204,18 +208,20 @@ impl ReportedExperiment<'_> {
         }
     }
 
-    /// Contacts against time: of the pusher, then of each fixel.
+    /// Contacts against time, a panel per body: of the pusher, each fixel, then each other finger. `None` where
+    /// nothing is known of any contact.
     #[must_use]
-    pub fn contact_timeline(&self) -> ContactTimeline {
+    pub fn contact_timeline(&self) -> Option<TimeFigure> {
         let time = &self.log.time;
         let truth = |body: usize| {
             let touches = self.touches.get(body)?.as_ref()?;
-            Some(intervals(time, touches))
+            Some(("touches", Colour::INK, intervals(time, touches)))
         };
         let sensed = |body: usize| {
-            let readings = self.log.tactile.get(body.checked_sub(1)?)?;
+            let sensor = sensor_of(body, self.setup.scene.fixels.len());
+            let readings = self.log.tactile.get(sensor)?;
             let touches: Vec<bool> = readings.iter().map(|r| *r == Some(true)).collect();
-            Some(intervals(time, &touches))
+            Some(("sensor reads 1", Colour::GREY, intervals(time, &touches)))
         };
         let learner = self
             .learner()
@@ -224,28 +230,40 @@ impl ReportedExperiment<'_> {
             let (run, probabilities) = learner.as_ref()?;
             let at = |row: &Option<Vec<f64>>| row.as_ref()?.get(body).copied();
             let rows = run.scored.estimate.time.iter().zip(probabilities);
-            let points = rows.map(|(time, row)| [*time, at(row).unwrap_or(f64::NAN)]);
-            Some(ContactEstimate {
-                name: run.title().to_owned(),
-                colour: run.colour(),
-                points: points.collect(),
+            let points: Vec<[f64; 2]> = rows
+                .map(|(time, row)| [*time, at(row).unwrap_or(f64::NAN)])
+                .collect();
+            let band = points.iter().map(|[time, p]| [*time, 0.0, *p]).collect();
+            let name = format!("{}: probability", run.title());
+            Some(Curve {
+                band,
+                ..Curve::new(&name, run.colour(), points)
             })
         };
-        let lane = |body: usize| ContactLane {
-            name: match body {
-                0 => "pusher".to_owned(),
-                _ => format!("fixel {body}"),
-            },
-            truth: truth(body),
-            sensed: sensed(body),
-            estimates: estimate(body).into_iter().collect(),
+        let panel = |body: usize| Panel {
+            label: body_name(body, self.setup.scene.fixels.len()),
+            // the bars lie above the probability of 1
+            limits: Some([0.0, 1.7]),
+            curves: estimate(body).into_iter().collect(),
+            bars: [truth(body), sensed(body)]
+                .into_iter()
+                .flatten()
+                .map(|(name, colour, times)| Bars {
+                    name: name.to_owned(),
+                    colour,
+                    times,
+                })
+                .collect(),
+            ..Panel::default()
         };
-        ContactTimeline {
-            title: String::new(),
-            span: self.span(),
-            dark: self.dark(),
-            bodies: (0..=self.setup.scene.fixels.len()).map(lane).collect(),
-        }
+        let panels: Vec<Panel> = (0..=self.setup.scene.fixels.len()).map(panel).collect();
+        let known = |panel: &Panel| !panel.bars.is_empty() || !panel.curves.is_empty();
+        panels.iter().any(known).then(|| TimeFigure {
+            panels,
+            panel_size: [882.0, 92.0],
+            marks: Vec::new(),
+            ..self.time_figure()
+        })
     }
 
     /// Bodies at the first fixel contact and at the end, side by side and on the same scale.
@@ -331,13 +349,12 @@ impl ReportedExperiment<'_> {
     /// Fixels, pusher and the object at its reference pose.
     pub(crate) fn known_bodies(&self, row: usize) -> Vec<Body> {
         let scene = &self.setup.scene;
-        let pusher = self.log.pusher.get(row).copied().flatten();
         let truth = self.reference.pose_at(self.time_of(row));
         let object = truth.map(|pose| {
             let name = &self.reference_name;
             Body::new(name, &scene.object.shape, &pose, Colour::INK).filled(0.12)
         });
-        let mut bodies = Body::surroundings(scene, pusher.as_ref());
+        let mut bodies = Body::surroundings(scene, &self.log.fingers_at(row));
         bodies.extend(object);
         bodies
     }
@@ -366,6 +383,24 @@ impl ReportedExperiment<'_> {
             turn_factor: 10.0,
             width: 441.0,
         })
+    }
+}
+
+/// "pusher", "fixel 1", "finger 1", in a scene with so many `fixels`.
+pub(crate) fn body_name(body: usize, fixels: usize) -> String {
+    match body {
+        0 => "pusher".to_owned(),
+        _ if body > fixels => format!("finger {}", body - fixels),
+        _ => format!("fixel {body}"),
+    }
+}
+
+/// Number of the tactile sensor of a body (see [`body_name`]) in the log.
+pub(crate) fn sensor_of(body: usize, fixels: usize) -> usize {
+    match body {
+        0 => fixels,
+        _ if body > fixels => body,
+        _ => body - 1,
     }
 }
 

@@ -26,7 +26,7 @@ pub fn live_page(scene: &Scene, title: &str) -> String {
     let view = [low[0], low[1], high[0], high[1]].map(|x| 1e3 * x);
     let data = json!({
         "object": body(&outline(&scene.object.shape)),
-        "pusher": body(&outline(&scene.pusher.fingers[0])),
+        "fingers": scene.pusher.fingers.iter().map(|finger| body(&outline(finger))).collect::<Vec<_>>(),
         "fixels": fixels.iter().map(body).collect::<Vec<_>>(),
         "reach": 1e3 * scene.object.shape.bounding_radius(),
         "view": view,
@@ -51,6 +51,11 @@ pub fn live_page(scene: &Scene, title: &str) -> String {
                                 thead { tr { th scope="col" { "estimate" } th scope="col" {} th scope="col" {} } }
                                 tbody {}
                             }
+                            svg class="history strip" viewBox="0 0 100 30" preserveAspectRatio="none" role="img" aria-label="Spread in the last minute; shaded while the camera is off" {
+                                path class="dark" {}
+                                g class="curve" style={ "--colour:" (Colour::of(Variant::Particle).hex()) } { path class="line" {} }
+                            }
+                            p class="most" {}
                             p class="legend" {
                                 "Filled: what the camera measures. Coloured: the estimate; thin: particles. Fixels are yellow while their sensor "
                                 "is touched; rims turn yellow with the estimated probability that they press on the object: at rest they may touch without."

@@ -32,6 +32,7 @@ pub(crate) struct Names {
 #[derive(Clone, Debug, PartialEq)]
 struct Name {
     text: String,
+    time: f64,
     centre: f64,
     half_width: f64,
     line: usize,
@@ -65,6 +66,7 @@ pub(crate) fn place(marks: &[Mark], axis: &Axis) -> Names {
             .unwrap_or(0);
         placed.push(Name {
             text: mark.name.clone(),
+            time: mark.time,
             centre,
             half_width,
             line,
@@ -83,7 +85,7 @@ impl Names {
         html! {
             @for name in &self.placed {
                 @let y = top + self.height - name.line as f64 * MARK_LINE - 4.0;
-                (Text { anchor: Anchor::Middle, ..Text::at([left + name.centre, y], &name.text) }.sized(SIZE))
+                g data-at=(name.time) { (Text { anchor: Anchor::Middle, ..Text::at([left + name.centre, y], &name.text) }.sized(SIZE)) }
             }
         }
     }

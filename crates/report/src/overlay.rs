@@ -89,32 +89,29 @@ impl Body {
         Self { opacity, ..self }
     }
 
-    /// Bodies about the object: fixels with their numbers, and the pusher where it is on the table.
+    /// Bodies about the object: fixels with their numbers, and the pusher's `fingers` that are on
+    /// the table.
     #[must_use]
-    pub fn surroundings(scene: &Scene, pusher: Option<&Pose>) -> Vec<Self> {
+    pub fn surroundings(scene: &Scene, fingers: &[Option<Pose>]) -> Vec<Self> {
         let fixel = |(k, fixel): (usize, &stickslip_dynamics::Fixel)| Self {
             tag: (k + 1).to_string(),
             ..Self::new("", &fixel.shape, &fixel.pose, Colour::INK).filled(0.25)
         };
-        let pusher = pusher
-            .map(|pose| Self::new("", &scene.pusher.fingers[0], pose, Colour::INK).filled(0.45));
+        let fingers = scene.pusher.fingers.iter().zip(fingers);
+        let fingers = fingers.filter_map(|(shape, pose)| {
+            Some(Self::new("", shape, pose.as_ref()?, Colour::INK).filled(0.45))
+        });
         scene
             .fixels
             .iter()
             .enumerate()
             .map(fixel)
-            .chain(pusher)
+            .chain(fingers)
             .collect()
     }
 }
 
 impl Overlay {
-    /// The bodies in the plane, with a scale, as SVG text.
-    #[must_use]
-    pub fn to_svg(&self) -> String {
-        self.drawing().to_svg()
-    }
-
     /// The bodies in the plane, to be put next to other drawings.
     #[must_use]
     pub fn drawing(&self) -> Drawing {
@@ -198,7 +195,7 @@ impl Body {
             ]
         });
         html! {
-            path d=(area) fill=(self.colour.hex()) fill-opacity=(px(self.opacity)) {}
+            @if self.opacity > 0.0 { path d=(area) fill=(self.colour.hex()) fill-opacity=(px(self.opacity)) {} }
             path d=(boundary) fill="none" stroke=(self.colour.hex()) stroke-width=(if self.thin { "1" } else { "2" }) stroke-opacity=[self.thin.then_some("0.16")] stroke-linejoin="round" stroke-linecap="round"
                 stroke-dasharray=[self.line.dashes()] {}
             @if let Some(at) = middle.filter(|_| !self.tag.is_empty()) {

@@ -10,6 +10,7 @@ use crate::font::{BOLD, REGULAR};
 use crate::playback::Playback;
 use crate::sentences::{Fate, Sentence};
 use crate::table::Table;
+use crate::terms::explained;
 
 const STYLE: &str = include_str!("../page/report.css");
 /// Characters that are escaped in an address of a table, mostly digits and commas.
@@ -20,6 +21,7 @@ const ESCAPED: &AsciiSet = &NON_ALPHANUMERIC
     .remove(b'_');
 
 pub(crate) const SCRIPT: &str = include_str!("../page/player.js");
+const FIGURES: &str = include_str!("../page/figures.js");
 
 /// A page with a summary on top.
 #[derive(Clone, Debug, Default)]
@@ -54,6 +56,8 @@ pub enum Block {
     Note(String),
     /// A table under a caption, which may be empty.
     Table(Table, String),
+    /// Blocks behind a line that opens them.
+    Details(String, Vec<Block>),
     /// A figure over a caption, which may be empty.
     Figure(Drawing, String),
     /// An experiment to be played back.
@@ -73,11 +77,10 @@ impl Report {
     /// The page as HTML text, with styles, fonts, figures, data and script in it.
     #[must_use]
     pub fn to_html(&self) -> String {
-        let plays = self
-            .sections
-            .iter()
-            .flat_map(|section| &section.blocks)
-            .any(|block| matches!(block, Block::Playback(_)));
+        let sections = self.sections.iter().flat_map(|section| &section.blocks);
+        let mut blocks = self.summary.iter().chain(sections);
+        let moves = |block: &Block| matches!(block, Block::Playback(_) | Block::Figure(..));
+        let moves = blocks.any(moves);
         let page = html! {
             (DOCTYPE)
             html lang="en" {
@@ -86,16 +89,27 @@ impl Report {
                     main {
                         h1 { (self.title) }
                         @if !self.summary.is_empty() { div class="summary" { @for block in &self.summary { (block.html()) } } }
+                        (self.contents())
                         @for section in &self.sections { (section.html()) }
                         @if !self.origin.is_empty() {
                             footer { h2 { "How this page was made" } dl { @for (name, value) in &self.origin { dt { (name) } dd { (value) } } } }
                         }
                     }
-                    @if plays { script { (PreEscaped(SCRIPT)) } }
+                    @if moves { script { (PreEscaped(SCRIPT)) (PreEscaped(FIGURES)) } }
                 }
             }
         };
         page.into_string()
+    }
+
+    /// Links to the sections, where there are several.
+    fn contents(&self) -> Markup {
+        let titled = self.sections.iter().filter(|part| !part.title.is_empty());
+        html! {
+            @if titled.clone().count() > 1 {
+                nav aria-label="contents" { ol { @for part in titled { li { a href={ "#" (part.anchor()) } { (part.title) } } } } }
+            }
+        }
     }
 }
 
@@ -113,9 +127,18 @@ pub(crate) fn head(title: &str) -> Markup {
 }
 
 impl Section {
+    /// Name of its place in the page: the letters and digits of its title.
+    #[must_use]
+    pub fn anchor(&self) -> String {
+        let words = self.title.split(|letter: char| !letter.is_alphanumeric());
+        let words: Vec<&str> = words.filter(|word| !word.is_empty()).collect();
+        words.join("-").to_lowercase()
+    }
+
     fn html(&self) -> Markup {
+        let anchor = self.anchor();
         html! {
-            div class="part" {
+            div class="part" id=[(!anchor.is_empty()).then_some(anchor)] {
                 @if !self.title.is_empty() { h2 { (self.title) } }
                 @for block in &self.blocks { (block.html()) }
             }
@@ -126,14 +149,17 @@ impl Section {
 impl Block {
     fn html(&self) -> Markup {
         match self {
-            Self::Text(text) => html! { p { (text) } },
+            Self::Text(text) => html! { p { (explained(text)) } },
             Self::Sentences(all) => {
                 html! { ul class="fates" { @for sentence in all { (sentence.html()) } } }
             }
             Self::Note(text) => html! { p class="note" { (text) } },
             Self::Table(table, caption) => table.html(caption),
+            Self::Details(summary, blocks) => {
+                html! { details { summary { (summary) } @for block in blocks { (block.html()) } } }
+            }
             Self::Figure(drawing, caption) => html! {
-                figure class=[drawing.narrow.is_some().then_some("two")] { (PreEscaped(drawing.to_svg())) @if let Some(narrow) = &drawing.narrow { (PreEscaped(narrow.to_svg())) } @if !caption.is_empty() { figcaption { (caption) } } }
+                figure class=[drawing.narrow.is_some().then_some("two")] { (PreEscaped(drawing.to_svg())) @if let Some(narrow) = &drawing.narrow { (PreEscaped(narrow.to_svg())) } @if !caption.is_empty() { figcaption { (explained(caption)) } } }
             },
             Self::Playback(playback) => playback.html(),
             Self::Download { name, what, bytes } => {

@@ -40,12 +40,6 @@ pub struct ParticleCloud {
 }
 
 impl ParticleCloud {
-    /// The figure as SVG text.
-    #[must_use]
-    pub fn to_svg(&self) -> String {
-        self.drawing().to_svg()
-    }
-
     /// The figure, to be put next to others.
     #[must_use]
     pub fn drawing(&self) -> Drawing {

@@ -10,6 +10,7 @@ use stickslip_evaluation::Reference;
 
 use crate::colour::{Colour, Line};
 use crate::curves::PoseError;
+use crate::experiment_figures::{body_name, sensor_of};
 use crate::marks::Mark;
 use crate::outline::Outline;
 use crate::playback_data::{data, has_cloud, knows_contacts};
@@ -30,19 +31,19 @@ pub struct Playback {
     pub poster: usize,
     /// The object in its own frame (m).
     pub object: Outline,
-    /// The pusher in its own frame (m).
-    pub pusher: Outline,
+    /// The pusher and a hand's other fingers, each in its own frame (m).
+    pub fingers: Vec<Outline>,
     /// The fixels in the world (m).
     pub fixels: Vec<Outline>,
     /// Poses of the object: its truth, or the camera's measurements.
     pub reference: Vec<Option<Pose>>,
     /// Name of these poses, as "truth".
     pub reference_name: String,
-    /// Measured poses of the pusher.
-    pub pusher_poses: Vec<Option<Pose>>,
+    /// Measured poses of each of them.
+    pub finger_poses: Vec<Vec<Option<Pose>>>,
     /// True for rows at which the camera was off.
     pub hidden: Vec<bool>,
-    /// Contacts of the object: with the pusher, then with each fixel.
+    /// Contacts of the object: with the pusher, each fixel, then each other finger.
     pub touches: Vec<Touch>,
     /// Events that are named on the time bar.
     pub marks: Vec<Mark>,
@@ -127,15 +128,16 @@ impl Playback {
             .iter()
             .map(|time| reference.pose_at(*time))
             .collect();
-        let fixels =
-            (0..scene.fixels.len()).map(|k| touch(format!("fixel {}", k + 1), log.tactile.get(k)));
+        let fixels = scene.fixels.len();
+        let bodies = fixels + scene.pusher.fingers.len();
+        let sensed = |body: usize| log.tactile.get(sensor_of(body, fixels));
         Self {
             name: "the experiment".to_owned(),
             time: log.time.clone(),
             focus: 0..log.len(),
             poster: log.len().saturating_sub(1),
             object: Outline::new(&scene.object.shape),
-            pusher: Outline::new(&scene.pusher.fingers[0]),
+            fingers: scene.pusher.fingers.iter().map(Outline::new).collect(),
             fixels: scene
                 .fixels
                 .iter()
@@ -143,10 +145,13 @@ impl Playback {
                 .collect(),
             reference: held(&known, &log.object_out_of_sight()),
             reference_name: "truth".to_owned(),
-            pusher_poses: held(&log.pusher, &log.pusher_out_of_sight()),
+            finger_poses: log
+                .fingers()
+                .map(|poses| held(poses, &log.pusher_out_of_sight()))
+                .collect(),
             hidden,
-            touches: std::iter::once(touch("pusher".to_owned(), None))
-                .chain(fixels)
+            touches: (0..bodies)
+                .map(|body| touch(body_name(body, fixels), sensed(body)))
                 .collect(),
             marks: Vec::new(),
             runs: Vec::new(),

@@ -58,10 +58,10 @@ pub(crate) fn data(playback: &Playback) -> Value {
         "view": view(playback),
         "reach": reach,
         "object": body(&playback.object),
-        "pusher": body(&playback.pusher),
+        "fingers": playback.fingers.iter().map(body).collect::<Vec<_>>(),
         "fixels": playback.fixels.iter().map(body).collect::<Vec<_>>(),
         "truth": poses(&playback.reference, rows.clone()),
-        "pusherPose": poses(&playback.pusher_poses, rows.clone()),
+        "fingerPoses": playback.finger_poses.iter().map(|column| poses(column, rows.clone())).collect::<Vec<_>>(),
         "dark": row_ranges(hidden.iter().map(|flag| *flag == 1)),
         "hidden": hidden,
         "touches": playback.touches.iter().map(|touch| contact(touch, rows.clone())).collect::<Vec<_>>(),
@@ -185,7 +185,7 @@ fn contact(touch: &Touch, rows: Rows) -> Value {
     json!({ "name": touch.name, "truth": touch.truth.as_ref().map(truth), "sensed": touch.sensed.as_ref().map(sensed) })
 }
 
-/// Left, low, width and height (mm) of the box that contains the object and the pusher in the part
+/// Left, low, width and height (mm) of the box that contains the object and the fingers in the part
 /// that is played first, and the fixels. Without a reference, the object's way is that of the run
 /// whose contacts are shown, or of the first run.
 fn view(playback: &Playback) -> [f64; 4] {
@@ -207,9 +207,10 @@ fn view(playback: &Playback) -> [f64; 4] {
     let object: Vec<Option<Pose>> = reference
         .map(|(row, known)| known.or_else(|| guessed(row)))
         .collect();
+    let fingers = playback.fingers.iter().zip(&playback.finger_poses);
     let all = fixels
         .chain(swept(&playback.object, &object))
-        .chain(swept(&playback.pusher, &playback.pusher_poses));
+        .chain(fingers.flat_map(|(finger, poses)| swept(finger, poses)));
     let [[left, low], [right, high]] = bounds(all)
         .unwrap_or([[-0.05; 2], [0.05; 2]])
         .map(|corner| corner.map(|length| 1e3 * length));

@@ -72,11 +72,16 @@ impl Plot<'_> {
         let ticks = self.x.ticks(SPACING[0]);
         let line = path([[left, top + height], [left + width, top + height]], false);
         html! {
-            path class="axis" d={ (line) (self.tick_strokes(&ticks)) } stroke=(Colour::INK.hex()) fill="none" {}
-            @if !self.x_label.is_empty() {
-                @for tick in &ticks {
-                    (Text { anchor: Anchor::Middle, ..Text::at([self.x.at(tick.value), top + height + 20.0], &tick.label) }.sized(LABEL))
+            path class="axis" d=(line) stroke=(Colour::INK.hex()) fill="none" {}
+            g class="ticks" {
+                path class="axis" d=(self.tick_strokes(&ticks)) stroke=(Colour::INK.hex()) fill="none" {}
+                @if !self.x_label.is_empty() {
+                    @for tick in &ticks {
+                        (Text { anchor: Anchor::Middle, ..Text::at([self.x.at(tick.value), top + height + 20.0], &tick.label) }.sized(LABEL))
+                    }
                 }
+            }
+            @if !self.x_label.is_empty() {
                 @if let Some(steps) = self.steps { (self.step_numbers(&ticks, steps)) }
                 @let below = if self.steps.is_some() { STEPS } else { 0.0 };
                 (Text { anchor: Anchor::Middle, ..Text::at([left + 0.5 * width, top + height + below + 40.0], self.x_label) }.sized(LABEL))
@@ -140,7 +145,7 @@ impl Plot<'_> {
     pub fn clipped(&self, content: Markup) -> Markup {
         let [left, top, width, height] = self.frame().map(px);
         html! {
-            svg x=(left) y=(top) width=(width) height=(height) viewBox={ (left) " " (top) " " (width) " " (height) } overflow="hidden" { (content) }
+            svg x=(left) y=(top) width=(width) height=(height) viewBox={ (left) " " (top) " " (width) " " (height) } preserveAspectRatio="none" overflow="hidden" { (content) }
         }
     }
 
@@ -166,7 +171,7 @@ impl Plot<'_> {
         html! {
             path d=(path(pixels.iter().copied(), false)) fill="none" stroke=(colour.hex()) stroke-width="1.8" stroke-linejoin="round" stroke-dasharray=[line.dashes()] {}
             @for [x, y] in (0..pixels.len()).filter(is_alone).map(|k| pixels[k]) {
-                circle cx=(px(x)) cy=(px(y)) r="3" fill=(colour.hex()) {}
+                path d={ "M" (px(x)) " " (px(y)) "h0" } stroke=(colour.hex()) stroke-width="6" stroke-linecap="round" {}
             }
         }
     }

@@ -122,9 +122,7 @@ impl<'a> ReportedExperiment<'a> {
             Block::Table(self.scores(), self.name.clone()),
             Block::Note(format!(
                 "Pose RMSE: root of the mean squared error of the pose against the {}{}. Angles are multiplied by the radius \
-                 of gyration. (The paper calls it WMSE.) {} Expected error: the error that the method itself expects. Moving: from \
-                 the pusher's first contact to the object's last motion. Final: at the last row. Unsolved: steps of \
-                 particles without a certified solution. Collapses: rows that no particle explains. Contact: {}.",
+                 of gyration. (The paper calls it WMSE.) {} Contact: {}.",
                 self.reference_name,
                 self.where_known(),
                 Fate::rule(),
@@ -365,8 +363,7 @@ impl<'a> ReportedExperiment<'a> {
         let rows = run.scored.estimate.rows.iter().enumerate();
         rows.map(|(row, estimate)| {
             let particles = run.cloud.get(row).map_or(&[][..], Vec::as_slice);
-            let pusher = self.log.pusher.get(row).copied().flatten();
-            rule.probabilities(estimate, particles, pusher)
+            rule.probabilities(estimate, particles, &self.log.fingers_at(row))
         })
         .collect()
     }

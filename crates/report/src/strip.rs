@@ -23,8 +23,10 @@ pub struct StripPlot {
     pub label: String,
     /// Quantity and unit.
     pub x_label: String,
-    /// Smallest value shown; smaller ones are drawn there. The axis is logarithmic.
-    pub floor: f64,
+    /// Spacing of values.
+    pub scale: Scale,
+    /// A value that is marked from top to bottom.
+    pub level: Option<f64>,
     /// Meaning of the marks; empty where there are none.
     pub mark_name: String,
     /// Groups of lanes, from top to bottom.
@@ -49,6 +51,10 @@ pub struct StripLane {
     pub colour: Colour,
     /// The values.
     pub values: Vec<f64>,
+    /// Source of each value, shown where the pointer rests on it; may be empty.
+    pub labels: Vec<String>,
+    /// Interval of their median.
+    pub interval: Option<[f64; 2]>,
     /// A value to compare them with.
     pub mark: Option<f64>,
 }
@@ -73,11 +79,10 @@ impl StripPlot {
         let bottom = top + heights.sum::<f64>();
         let lanes = self.groups.iter().flat_map(|group| &group.lanes);
         let values = lanes.flat_map(|lane| lane.values.iter().copied().chain(lane.mark));
-        let scale = Scale::Log { floor: self.floor };
         let plot = Plot {
             x: Axis {
-                scale,
-                limits: scale.limits(values),
+                scale: self.scale,
+                limits: self.scale.limits(values.chain(self.level)),
                 pixels: [left, room - RIGHT],
             },
             y: Axis {
@@ -93,6 +98,7 @@ impl StripPlot {
         let body = html! {
             (legend)
             (plot.time_axis())
+            @if let Some(level) = self.level { (plot.event(level, 0.0)) }
             @for group in &self.groups {
                 (group.draw(below, &plot))
                 ({ below += group.height(); "" })
@@ -136,7 +142,7 @@ impl StripGroup {
 }
 
 impl StripLane {
-    /// The dots, a bar at their median, and the mark.
+    /// The dots, a bar at their median with its interval, and the mark.
     fn draw(&self, centre: f64, plot: &Plot<'_>) -> Markup {
         let at = |value: &f64| plot.x.at(*value);
         let bar = |value: f64, half: f64| {
@@ -145,8 +151,13 @@ impl StripLane {
         };
         let colour = self.colour.hex();
         html! {
-            @for value in &self.values {
-                circle cx=(px(at(value))) cy=(px(centre)) r="3.5" fill=(colour) fill-opacity="0.45" {}
+            @for (k, value) in self.values.iter().enumerate() {
+                circle cx=(px(at(value))) cy=(px(centre)) r="3.5" fill=(colour) fill-opacity="0.45" {
+                    @if let Some(label) = self.labels.get(k) { title { (label) } }
+                }
+            }
+            @if let Some(ends) = &self.interval {
+                path class="axis" d=(path(ends.map(|end| [at(&end), centre]), false)) stroke=(Colour::INK.hex()) stroke-width="2" fill="none" {}
             }
             @if let Some(median) = stickslip_evaluation::quantile(&self.values, 0.5) {
                 path d=(bar(median, 8.0)) stroke=(colour) stroke-width="3" fill="none" {}
@@ -167,6 +178,8 @@ mod tests {
         let lane = |values: &[f64]| StripLane {
             name: "with touch".to_owned(),
             values: values.to_vec(),
+            labels: vec!["a <log>".to_owned()],
+            interval: Some([0.2, 4.0]),
             mark: Some(30.0),
             ..StripLane::default()
         };
@@ -175,7 +188,7 @@ mod tests {
             lanes: vec![lane(values)],
         };
         let plot = StripPlot {
-            floor: 0.1,
+            scale: Scale::Log { floor: 0.1 },
             x_label: "mm".to_owned(),
             groups: vec![group(&[0.01, 0.5, 12.0]), group(&[2.0])],
             ..StripPlot::default()
@@ -187,6 +200,7 @@ mod tests {
             .map(|rest| rest[..rest.find('"').unwrap()].parse().unwrap())
             .collect();
         assert_eq!(places.len(), 4);
+        assert_eq!(svg.matches("<title>a &lt;log&gt;</title>").count(), 2);
         let inside = |x: &f64| (30.0..=drawing.width - RIGHT).contains(x);
         assert!(places.iter().all(inside), "{places:?}");
         assert!(places[0] < places[1] && places[3] < places[2]);

@@ -6,12 +6,21 @@ use std::fmt;
 use maud::{Markup, html};
 
 use crate::colour::Colour;
+use crate::terms::explained;
 
 /// Rows of cells: the first column is left-aligned, the others right-aligned.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Table {
     titles: Vec<String>,
-    rows: Vec<(Option<Colour>, Vec<String>)>,
+    rows: Vec<Row>,
+}
+
+#[derive(Clone, Debug, Default, PartialEq)]
+struct Row {
+    colour: Option<Colour>,
+    /// Address that its first cell links to.
+    href: Option<String>,
+    cells: Vec<String>,
 }
 
 impl Table {
@@ -26,12 +35,32 @@ impl Table {
 
     /// Appends a row.
     pub fn push(&mut self, cells: impl IntoIterator<Item = String>) {
-        self.rows.push((None, cells.into_iter().collect()));
+        self.push_row(None, None, cells);
+    }
+
+    /// Appends a row whose first cell links to a place of the page, as `#` and
+    /// [`crate::Section::anchor`].
+    pub fn push_linked(&mut self, href: Option<String>, cells: impl IntoIterator<Item = String>) {
+        self.push_row(None, href, cells);
     }
 
     /// Appends a row that has this colour in figures.
     pub fn push_coloured(&mut self, colour: Colour, cells: impl IntoIterator<Item = String>) {
-        self.rows.push((Some(colour), cells.into_iter().collect()));
+        self.push_row(Some(colour), None, cells);
+    }
+
+    fn push_row(
+        &mut self,
+        colour: Option<Colour>,
+        href: Option<String>,
+        cells: impl IntoIterator<Item = String>,
+    ) {
+        let cells = cells.into_iter().collect();
+        self.rows.push(Row {
+            colour,
+            href,
+            cells,
+        });
     }
 
     /// The table as HTML, under a caption.
@@ -40,12 +69,12 @@ impl Table {
             div class="scroll" tabindex="0" role="region" aria-label=(if caption.is_empty() { "table" } else { caption }) {
                 table {
                     @if !caption.is_empty() { caption { (caption) } }
-                    thead { tr { @for title in &self.titles { th scope="col" { (title) } } } }
+                    thead { tr { @for title in &self.titles { th scope="col" { (explained(title)) } } } }
                     tbody {
-                        @for (colour, cells) in &self.rows {
+                        @for Row { colour, href, cells } in &self.rows {
                             tr { @for (column, cell) in cells.iter().enumerate() {
                                 @if column == 0 {
-                                    th scope="row" { @if let Some(colour) = colour { (swatch(*colour)) } (cell) }
+                                    th scope="row" { @if let Some(colour) = colour { (swatch(*colour)) } @if let Some(href) = href { a href=(href) { (cell) } } @else { (cell) } }
                                 } @else {
                                     td data-of=[self.titles.get(column)] { (cell) }
                                 }
@@ -58,7 +87,7 @@ impl Table {
     }
 
     fn all_rows(&self) -> impl Iterator<Item = &Vec<String>> {
-        std::iter::once(&self.titles).chain(self.rows.iter().map(|(_, cells)| cells))
+        std::iter::once(&self.titles).chain(self.rows.iter().map(|row| &row.cells))
     }
 
     /// Widths of all columns as text.

@@ -5,10 +5,10 @@ use maud::{Markup, html};
 
 use crate::axis::{Axis, Scale};
 use crate::colour::{Colour, Line};
-use crate::drawing::{Anchor, COLUMN, Drawing, LABEL, Text, title_lines};
+use crate::drawing::{Anchor, COLUMN, Drawing, LABEL, Text, px, title_lines};
 use crate::font::Weight;
 use crate::legend::{Legend, Swatch};
-use crate::marks::{MARK_LINE, Mark, place};
+use crate::marks::{Mark, place};
 use crate::plot::{Plot, STEPS};
 
 /// Widths of a panel's surroundings (px).
@@ -17,6 +17,7 @@ const RIGHT: f64 = 18.0;
 const BOTTOM: f64 = 14.0;
 const TIMES: f64 = 36.0;
 const TOP: f64 = 10.0;
+const BAR: f64 = 9.0;
 
 /// Quantities against time, in panels of equal size.
 #[derive(Clone, Debug, PartialEq)]
@@ -63,6 +64,19 @@ pub struct Panel {
     pub curves: Vec<Curve>,
     /// Values that do not change, as the truth.
     pub levels: Vec<Level>,
+    /// Times of a state, drawn as bars from top to bottom.
+    pub bars: Vec<Bars>,
+}
+
+/// Times at which something holds, as a contact.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Bars {
+    /// Name in the legend.
+    pub name: String,
+    /// Colour.
+    pub colour: Colour,
+    /// The times, from..to.
+    pub times: Vec<[f64; 2]>,
 }
 
 /// One line of a panel.
@@ -97,7 +111,6 @@ pub struct Level {
 struct Place {
     corner: [f64; 2],
     size: [f64; 2],
-    first_row: bool,
     /// Nothing stands below it: it names the times.
     last_row: bool,
 }
@@ -120,12 +133,6 @@ impl Default for TimeFigure {
 }
 
 impl TimeFigure {
-    /// The figure as SVG text.
-    #[must_use]
-    pub fn to_svg(&self) -> String {
-        self.drawing().to_svg()
-    }
-
     /// The figure, to be put next to others; on a phone its panels stand one below the other.
     #[must_use]
     pub fn drawing(&self) -> Drawing {
@@ -151,7 +158,7 @@ impl TimeFigure {
             @for (index, panel) in self.panels.iter().enumerate() {
                 @let corner = [(index % columns) as f64 * panel_width, head + (index / columns) as f64 * panel_height];
                 @if index < columns { (names.draw([corner[0], corner[1] - names.height + TOP - 4.0])) }
-                @let place = Place { corner, size, first_row: index < columns, last_row: index + columns >= self.panels.len() };
+                @let place = Place { corner, size, last_row: index + columns >= self.panels.len() };
                 (self.panel(panel, &place))
             }
         };
@@ -216,17 +223,20 @@ impl TimeFigure {
         let curves = html! {
             @for curve in panel.curves.iter().rev() { (plot.band(&curve.band, curve.colour)) }
             @for level in levels(true) { (plot.level(level.value, level.colour, level.line)) }
-            @for curve in lowest_first() { (plot.curve(&curve.points, curve.colour, curve.line)) }
+            @for curve in lowest_first() { g data-name=(curve.name) { (plot.curve(&curve.points, curve.colour, curve.line)) } }
             @for level in levels(false) { (plot.level(level.value, level.colour, level.line)) }
+            @for (k, bars) in panel.bars.iter().enumerate() { (bars.draw(k, &plot)) }
+            @for mark in self.marks.iter().filter(|mark| (from..=to).contains(&mark.time)) { (plot.event(mark.time, 0.0)) }
         };
+        // the page's script reads values and times, and moves what is clipped
+        let numbers = |limits: [f64; 2]| limits.map(|limit| limit.to_string()).join(" ");
         html! {
-            (title.sized(LABEL))
-            (plot.shades(panel.dark.as_ref().unwrap_or(&self.dark)))
-            (plot.axes())
-            @for mark in self.marks.iter().filter(|mark| (from..=to).contains(&mark.time)) {
-                (plot.event(mark.time, if place.first_row && panel.title.is_empty() { 0.25 * MARK_LINE } else { 0.0 }))
+            g class="panel" data-time=(numbers(plot.x.limits)) data-values=(numbers(plot.y.limits)) data-log=[(panel.scale != Scale::Linear).then_some("")] data-label=(panel.label) {
+                (title.sized(LABEL))
+                (plot.clipped(plot.shades(panel.dark.as_ref().unwrap_or(&self.dark))))
+                (plot.axes())
+                (plot.clipped(curves))
             }
-            (plot.clipped(curves))
         }
     }
 
@@ -241,11 +251,29 @@ impl TimeFigure {
         if let Some(banded) = curves().find(|curve| !curve.band.is_empty()) {
             legend.push(Swatch::Area(banded.colour), &self.band_name);
         }
+        for bars in self.panels.iter().flat_map(|panel| &panel.bars) {
+            legend.push(Swatch::Bar(bars.colour), &bars.name);
+        }
         let dark = |panel: &Panel| !panel.dark.as_ref().unwrap_or(&self.dark).is_empty();
         if self.panels.iter().any(dark) {
             legend.push(Swatch::Dark, "camera off");
         }
         legend
+    }
+}
+
+impl Bars {
+    /// Draws the k-th row of bars of a panel.
+    fn draw(&self, k: usize, plot: &Plot<'_>) -> Markup {
+        let top = plot.y.pixels[1] + 2.0 + k as f64 * (BAR + 3.0);
+        html! {
+            g data-name=(self.name) {
+                @for [from, to] in self.times.iter().filter(|[from, to]| from <= to) {
+                    @let (left, right) = (plot.x.at(*from), plot.x.at(*to));
+                    rect class=[(self.colour == Colour::INK).then_some("ink")] x=(px(left)) y=(px(top)) width=(px((right - left).max(1.0))) height=(px(BAR)) fill=(self.colour.hex()) {}
+                }
+            }
+        }
     }
 }
 

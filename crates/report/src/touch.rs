@@ -57,21 +57,23 @@ impl<'a> TouchRule<'a> {
         }
     }
 
-    /// Number of bodies: the pusher and the fixels.
+    /// Number of bodies: the pusher, the fixels, and a hand's other fingers.
     pub fn bodies(&self) -> usize {
-        1 + self.scene.fixels.len()
+        self.scene.fixels.len() + self.scene.pusher.fingers.len()
     }
 
-    /// Returns true if the object at a pose touches the pusher (0), which may be off the table, or
-    /// a fixel (from 1 on).
-    pub fn touches(&self, object: Pose, pusher: Option<Pose>, body: usize) -> bool {
-        let Scene { fixels, .. } = self.scene;
-        match body.checked_sub(1).map(|fixel| &fixels[fixel]) {
-            Some(fixel) => self.within(object, &fixel.shape, fixel.pose, GAP),
-            None => pusher.is_some_and(|pose| {
-                self.within(object, &self.scene.pusher.fingers[0], pose, self.pusher_gap)
-            }),
+    /// Returns true if the object at a pose touches the pusher (0), a fixel (from 1 on), or another
+    /// finger (after the fixels). `fingers` are the poses of the pusher and of the other fingers;
+    /// each may be off the table.
+    pub fn touches(&self, object: Pose, fingers: &[Option<Pose>], body: usize) -> bool {
+        let Scene { fixels, pusher, .. } = self.scene;
+        if (1..=fixels.len()).contains(&body) {
+            let fixel = &fixels[body - 1];
+            return self.within(object, &fixel.shape, fixel.pose, GAP);
         }
+        let finger = body.saturating_sub(fixels.len());
+        let pose = fingers.get(finger).copied().flatten();
+        pose.is_some_and(|pose| self.within(object, &pusher.fingers[finger], pose, self.pusher_gap))
     }
 
     fn within(&self, object: Pose, other: &Shape, at: Pose, gap: f64) -> bool {
@@ -87,7 +89,7 @@ impl<'a> TouchRule<'a> {
         &self,
         row: &EstimateRow,
         particles: &[Pose],
-        pusher: Option<Pose>,
+        fingers: &[Option<Pose>],
     ) -> Option<Vec<f64>> {
         let pressed: Vec<f64> = std::iter::once(row.contact_pusher?)
             .chain(row.contact_others.iter().flatten().copied())
@@ -95,7 +97,7 @@ impl<'a> TouchRule<'a> {
         let share = |body: usize| {
             let near = particles
                 .iter()
-                .filter(|pose| self.touches(**pose, pusher, body));
+                .filter(|pose| self.touches(**pose, fingers, body));
             near.count() as f64 / particles.len().max(1) as f64
         };
         let bodies = pressed.iter().enumerate();
@@ -103,8 +105,8 @@ impl<'a> TouchRule<'a> {
     }
 }
 
-/// True contacts of the object with the pusher, then with each fixel, row by row: it is pressed, or
-/// the gap is closed. `None` where there is no truth.
+/// True contacts of the object with the pusher, each fixel and each other finger, row by row: it is
+/// pressed, or the gap is closed. `None` where there is no truth.
 pub(crate) fn true_touches(
     experiment: &Experiment,
     reference: &Reference,
@@ -128,10 +130,12 @@ pub(crate) fn true_touches(
         };
         let touch = |(row, at): (usize, &Option<usize>)| {
             let pressed = at.and_then(|k| force?.get(k).copied());
-            let pusher = at.and_then(|k| truth.pusher.get(k).copied());
+            let mut fingers = log.fingers_at(row);
+            if let Some(pusher) = at.and_then(|k| truth.pusher.get(k)) {
+                fingers[0] = Some(*pusher);
+            }
             pressed.is_some_and(|force| force > setup.tactile.touch_force)
-                || reference.pose[row]
-                    .is_some_and(|pose| rule.touches(pose, pusher.or(log.pusher[row]), body))
+                || reference.pose[row].is_some_and(|pose| rule.touches(pose, &fingers, body))
         };
         rows.iter().enumerate().map(touch).collect()
     };
@@ -246,9 +250,9 @@ mod tests {
         };
         let particles = [0.019_85, 0.02, 0.018, 0.0199].map(|x| Pose::new(x, 0.0, 0.0));
         let rule = TouchRule::measured(&setup);
-        let found = rule.probabilities(&row, &particles, None);
+        let found = rule.probabilities(&row, &particles, &[]);
         assert_eq!(found, Some(vec![0.25, 0.75]));
-        let none = rule.probabilities(&EstimateRow::default(), &particles, None);
+        let none = rule.probabilities(&EstimateRow::default(), &particles, &[]);
         assert_eq!(none, None);
     }
 }

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable
-from typing import Any, Unpack
+from typing import TYPE_CHECKING, Any
 
 from stickslip._compare import compare
-from stickslip._filter import FilterOptions
+from stickslip._options import FilterOptions
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
 
 
 def occlusion_benchmark(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Sequence
 from typing import Any
 
@@ -11,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from stickslip._columns import numbers
 from stickslip._native import Error, Scene
+from stickslip._toml import tomllib
 
 
 def uniform_plate(polygon: ArrayLike, mass: float) -> tuple[NDArray[np.float64], NDArray[np.float64], float]:

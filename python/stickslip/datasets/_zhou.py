@@ -6,11 +6,12 @@ import os
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from stickslip._columns import Columns
-from stickslip._native import Error
+from stickslip._native import Error, Scene
 from stickslip.datasets._folder import write_experiment
+from stickslip.datasets._scene import uniform_plate
 from stickslip.datasets._streams import Stream, unwrapped
 
 #: Longest time without rows while the hand is on the table (s).
@@ -58,6 +59,75 @@ def import_two_finger(
         _write(f"{os.fspath(out)}-{push}", scene, times - times[0], part, file)
         for push, (times, part) in enumerate(parts, start=1)
     ]
+
+
+#: Runs of the published table: time of each log, by its folder.
+_RUNS = {
+    "bigrect_3pts/bigrect_3pts_20_neg30_90": ["05-23_22-05-15", "05-23_22-09-16", "05-23_22-10-46"],
+    "bigrect_3pts/bigrect_3pts_30_50_60": ["05-23_22-15-52", "05-23_22-17-27"],
+    "bigrect_3pts/bigrect_3pts_60_20_150": ["05-23_22-22-55", "05-23_22-24-39", "05-23_22-25-24"],
+    "bigrect_ridge/bigrect_ridge_20_neg30_90": ["05-23_21-24-11", "05-23_21-27-06"],
+    "bigrect_ridge/bigrect_ridge_30_50_60": ["05-23_21-35-34", "05-23_21-44-48", "05-23_21-46-02"],
+    "bigrect_ridge/bigrect_ridge_60_20_150": ["05-23_21-52-29", "05-23_21-55-51"],
+    "butter/butter_20_neg10_30": ["05-24_12-15-49", "05-24_12-21-04", "05-24_12-22-08"],
+    "butter/butter_60_20_135": ["05-24_12-25-31", "05-24_12-27-05"],
+    "butter/butter_neg30_10_90": ["05-24_12-09-43", "05-24_12-11-45", "05-24_12-12-31"],
+    "tri/tri_0_0_90": ["05-23_20-25-09", "05-23_20-28-32"],
+    "tri/tri_30_50_45": ["05-23_20-34-37", "05-23_20-37-08", "05-23_20-39-08"],
+    "tri/tri_neg50_20_180": ["05-23_20-48-46", "05-23_20-50-37"],
+}
+#: Scale and shift (m) of object positions that make camera and robot agree.
+_CORRECTIONS = {"bigrect": (1.0, (1e-4, 1.3e-3)), "butter": (0.9779, (7e-4, 1.4e-3)), "tri": (1.0, (0.0, 0.0))}
+
+
+def two_finger_scene(polygon: ArrayLike, *, position_std: float, orientation_std: float) -> str:
+    """Returns the text of ``scene.toml`` for a plate pushed by the two fingers of ``robot_exp_logs``.
+
+    ``polygon``: corners (K, 2) in m, counter-clockwise. Mass, friction and support are guesses: the
+    data tell none of them. Camera latency is 0.16 s, as the stops of the hand show.
+    """
+    mass = 0.05
+    corners, _, inertia = uniform_plate(polygon, mass)
+    fingers = [{"disc": {"radius": 0.0025, "centre": [0.0, side * 0.009]}} for side in (1, -1)]
+    return Scene.from_numbers(
+        gravity=9.81,
+        object={"mass": mass, "inertia": inertia, "shape": [{"polygon": corners}]},
+        support={"friction": 0.3, "tripod_radius": np.sqrt(inertia / mass)},
+        pusher={"shape": fingers, "friction": 0.3},
+        fixels={"friction": 0.25},
+        camera={"position_std": position_std, "orientation_std": orientation_std, "latency": 0.16},
+    ).text
+
+
+def import_two_finger_set(
+    logs: str | os.PathLike[str], out: str | os.PathLike[str], butter: str | None = None
+) -> list[Path]:
+    """Writes the pushes of ``docs/results.md`` below ``out``, from the folder ``robot_exp_logs``.
+
+    ``logs`` is what :func:`fetch` returns for ``two-finger``. Without ``butter``, the text of a scene
+    with the outline of the butterfly, its 16 of 70 pushes are left out.
+    """
+    scenes = {
+        "bigrect": two_finger_scene(
+            [[0.0, 0.0], [0.05, 0.0], [0.05, 0.035], [0.0, 0.035]], position_std=4e-4, orientation_std=0.005
+        ),
+        "tri": two_finger_scene([[0.0, 0.0], [0.0, 0.0275], [-0.058, 0.0]], position_std=1e-3, orientation_std=0.015),
+        "butter": butter,
+    }
+    pushes: list[Path] = []
+    for folder, runs in _RUNS.items():
+        condition = Path(folder).name
+        kind = condition.split("_")[0]
+        scene, (scale, shift) = scenes[kind], _CORRECTIONS[kind]
+        if scene is None:
+            continue
+        for run, time in enumerate(runs, start=1):
+            file = Path(logs) / folder / f"log2017-{time}.txt"
+            if not file.is_file():
+                raise Error(f'{file} is missing; give the folder robot_exp_logs that fetch("two-finger") returns')
+            target = Path(out) / f"{condition}_{run}"
+            pushes += import_two_finger(file, scene, target, scale=scale, shift=shift, single_pushes=True)
+    return pushes
 
 
 def read_alternating(file: str | os.PathLike[str]) -> Stream:

@@ -4,12 +4,9 @@ use std::fmt;
 
 use serde::Serialize;
 use stickslip::Method;
-use stickslip_evaluation::{Direction, PairedDifference, Variant, quantile};
+use stickslip_evaluation::{PairedDifference, Variant, quantile};
 
 use super::results::FolderResult;
-
-/// Standard errors from which a difference is clear.
-const CLEAR: f64 = 2.0;
 
 /// Ratio of median errors up to which two methods are level.
 const LEVEL: f64 = 1.1;
@@ -28,15 +25,12 @@ pub struct BestBaseline {
     particle_median_mm: f64,
     /// Median over folders of the particle filter's error minus the baseline's (mm).
     difference_mm: f64,
-    /// Standard error of that median (mm); `None` below six folders.
-    standard_error_mm: Option<f64>,
+    /// Distribution-free 95 % interval of that median (mm); `None` below six folders.
+    interval_mm: Option<[f64; 2]>,
     /// Folders in which the particle filter is nearer.
     particle_nearer: usize,
     /// Folders with both.
     folders: usize,
-    /// Verdict on the difference.
-    #[serde(skip)]
-    direction: Direction,
 }
 
 impl BestBaseline {
@@ -67,21 +61,20 @@ impl BestBaseline {
             median_mm: quantile(&baseline, 0.5)?,
             particle_median_mm: quantile(&particle, 0.5)?,
             difference_mm: difference.median,
-            standard_error_mm: Some(difference.standard_error).filter(|error| error.is_finite()),
+            interval_mm: difference.interval,
             particle_nearer: nearer.count(),
             folders: difference.pairs,
-            direction: difference.direction(CLEAR),
         })
     }
 
     /// "beats", "is level with" or "is worse than": the particle filter against the baseline.
     fn verdict(&self) -> &'static str {
         let [low, high] = [LEVEL * self.particle_median_mm, LEVEL * self.median_mm];
-        match (self.standard_error_mm, self.direction) {
-            (Some(_), Direction::Below) => "beats",
-            (Some(_), Direction::Above) => "is worse than",
-            (None, _) if self.median_mm > low => "beats",
-            (None, _) if self.particle_median_mm > high => "is worse than",
+        match self.interval_mm {
+            Some([_, most]) if most < 0.0 => "beats",
+            Some([least, _]) if least > 0.0 => "is worse than",
+            None if self.median_mm > low => "beats",
+            None if self.particle_median_mm > high => "is worse than",
             _ => "is level with",
         }
     }
@@ -97,11 +90,11 @@ impl fmt::Display for BestBaseline {
             self.particle_median_mm,
             self.median_mm
         )?;
-        match (self.standard_error_mm, self.folders) {
+        match (self.interval_mm, self.folders) {
             (_, 1) => write!(f, ", one experiment."),
-            (Some(error), folders) => write!(
+            (Some([low, high]), folders) => write!(
                 f,
-                " in the median, nearer in {} of {folders}; median difference {:+.2} ± {error:.2} mm.",
+                " in the median, nearer in {} of {folders}; median difference {:+.2} mm, 95 % interval {low:+.2} to {high:+.2}.",
                 self.particle_nearer, self.difference_mm
             ),
             (None, folders) => write!(

@@ -1,10 +1,11 @@
 //! A comparison as a page: [`report`].
 
 use stickslip_evaluation::Variant;
-use stickslip_report::{Block, Fate, Outcome, Report, Section, Sentence, verdicts};
+use stickslip_report::{Block, Fate, Outcome, Report, Section, Sentence, Table, number, verdicts};
 
+use super::figures::{figures, short};
 use super::folder_set::{FolderSet, Overall};
-use super::results::{Comparison, LEGEND};
+use super::results::{Comparison, FolderResult, LEGEND, VariantScores};
 use super::tables;
 use crate::origin::origin;
 use crate::output::counted;
@@ -14,8 +15,11 @@ const REST: &str = "RMSE: root mean square error of the pose, angles times the r
     Moving: from the pusher's first contact to the object's last motion. Unsolved: steps of particles without a certified solution. \
     Collapses: rows that no particle explains. Both are sums.";
 
-/// The table over all folders on top, then those `played` back, then each folder's.
-pub fn report(comparison: &Comparison, played: Vec<Section>) -> Report {
+/// Logs that are listed as the first ones to look at.
+const LISTED: usize = 8;
+
+/// Figures and tables over all folders on top, then those `played` back, then each folder's.
+pub fn report(comparison: &Comparison, played: Vec<(String, Section)>) -> Report {
     let Comparison {
         particles,
         seeds,
@@ -38,32 +42,24 @@ pub fn report(comparison: &Comparison, played: Vec<Section>) -> Report {
             format!("Over {title}: median (90th percentile)"),
         )
     };
-    let all = sets.iter().map(table).chain([Block::Note(note)]);
-    let each = folders.iter().flat_map(|folder| {
-        let table = Block::Table(
-            tables::entries(&folder.methods, Variant::title),
-            folder.folder.clone(),
-        );
-        let notes = folder.note.iter().chain(&folder.warnings);
-        [table].into_iter().chain(notes.cloned().map(Block::Note))
-    });
+    let tables = sets.iter().map(table).chain([Block::Note(note)]);
     let lost = errors.iter().map(|lost| Block::Text(lost.error.clone()));
-    let sections: [(&str, Vec<Block>); 3] = [
-        ("All experiments", all.collect()),
-        ("Each experiment", each.collect()),
-        ("Without a result", lost.collect()),
+    let section = |title: &str, blocks: Vec<Block>| Section {
+        title: title.to_owned(),
+        blocks,
+    };
+    let all = figures(comparison).into_iter().chain(tables).collect();
+    let first = [
+        section("All experiments", all),
+        section("Look at these first", vec![worst(comparison, &played)]),
     ];
-    let sections = sections
-        .into_iter()
-        .filter(|(_, blocks)| !blocks.is_empty());
-    let mut sections: Vec<Section> = sections
-        .map(|(title, blocks)| Section {
-            title: title.to_owned(),
-            blocks,
-        })
-        .collect();
-    let first = sections.len().min(1);
-    sections.splice(first..first, played);
+    let last = [
+        section("Each experiment", folders.iter().map(each).collect()),
+        section("Without a result", lost.collect()),
+    ];
+    let played = played.into_iter().map(|(_, section)| section);
+    let mut sections: Vec<Section> = first.into_iter().chain(played).chain(last).collect();
+    sections.retain(|section| !section.blocks.is_empty());
     Report {
         title: "Methods compared".to_owned(),
         summary: best_baseline
@@ -80,6 +76,59 @@ pub fn report(comparison: &Comparison, played: Vec<Section>) -> Report {
             ("seeds", seeds.to_string()),
         ]),
     }
+}
+
+/// Logs with the largest errors of the particle filter; those played back are linked.
+fn worst(comparison: &Comparison, played: &[(String, Section)]) -> Block {
+    let mut table = Table::new([
+        "log",
+        "particle filter (mm)",
+        "best other method (mm)",
+        "which",
+        "covers %",
+        "collapses",
+    ]);
+    for folder in comparison.ranked().into_iter().take(LISTED) {
+        let own = folder.scores(Variant::Particle);
+        let others = folder
+            .methods
+            .iter()
+            .filter(|other| other.variant != Variant::Particle && !other.variant.camera_on());
+        let error = |other: &&VariantScores| other.scores.wmse_mm.unwrap_or(f64::INFINITY);
+        let best = others.min_by(|a, b| error(a).total_cmp(&error(b)));
+        let place = played.iter().find(|(path, _)| *path == folder.folder);
+        table.push_linked(
+            place.map(|(_, section)| format!("#{}", section.anchor())),
+            [
+                short(&folder.folder).to_owned(),
+                number(own.and_then(|own| own.wmse_mm), 2),
+                number(best.and_then(|best| best.scores.wmse_mm), 2),
+                best.map_or_else(String::new, |best| best.variant.title().to_owned()),
+                number(
+                    own.and_then(|own| own.covered_90)
+                        .map(|share| 100.0 * share),
+                    0,
+                ),
+                own.map_or_else(String::new, |own| own.collapses.to_string()),
+            ],
+        );
+    }
+    let caption =
+        "Largest pose RMSE of the particle filter first. A link leads to the log's player.";
+    Block::Table(table, caption.to_owned())
+}
+
+/// The table of one folder behind its name and the particle filter's error.
+fn each(folder: &FolderResult) -> Block {
+    let own = folder.scores(Variant::Particle).and_then(|own| own.wmse_mm);
+    let own = own.map_or_else(String::new, |mm| format!(": particle filter {mm:.2} mm"));
+    let table = tables::entries(&folder.methods, Variant::title);
+    let notes = folder.note.iter().chain(&folder.warnings);
+    let blocks = [Block::Table(table, String::new())].into_iter();
+    Block::Details(
+        format!("{}{own}", folder.folder),
+        blocks.chain(notes.cloned().map(Block::Note)).collect(),
+    )
 }
 
 /// Runs behind the table over all folders.

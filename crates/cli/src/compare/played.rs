@@ -8,50 +8,40 @@ use stickslip_report::{Block, ReportedExperiment, Section};
 
 use super::Folder;
 use super::results::{Comparison, FolderResult};
-use crate::experiment::{experiment_name, one_pusher};
+use crate::experiment::experiment_name;
 use crate::log_files::log_path;
 use crate::reported_run::reported_run;
 use crate::since_start::since_start;
 
-/// All of up to two experiments; of more, the one on which the particle filter fares as on the
-/// median one, and the one on which it fares worst.
+/// Experiments with the largest errors that are played back.
+const WORST: usize = 3;
+
+/// Experiments by their folders: the ones on which the particle filter fares worst, the worst
+/// first, and the one on which it fares as on the median one.
 pub fn played(
     comparison: &Comparison,
     model: FilterModel,
     folders: &[Folder],
-) -> Result<Vec<Section>> {
-    let mut ranked: Vec<(&FolderResult, f64)> = comparison
-        .folders
-        .iter()
-        .filter_map(|result| Some((result, particle_score(result)?)))
-        .collect();
-    ranked.sort_by(|a, b| a.1.total_cmp(&b.1));
-    let (count, chosen) = (ranked.len(), [ranked.len().div_ceil(2), ranked.len()]);
+) -> Result<Vec<(String, Section)>> {
+    let ranked = comparison.ranked();
+    let count = ranked.len();
+    let median = count - count.div_ceil(2);
     let chosen = ranked
-        .iter()
+        .into_iter()
         .enumerate()
-        .filter(|(rank, _)| chosen.contains(&(rank + 1)));
-    let section = |(rank, (result, _)): (usize, &(&FolderResult, f64))| {
+        .filter(|(rank, _)| *rank < WORST || *rank == median);
+    let section = |(rank, result): (usize, &FolderResult)| {
         let path = |folder: &&Folder| folder.path.display().to_string() == result.folder;
         let folder = folders.iter().find(path).expect("a result has its folder");
         let section = section(folder, model, comparison.particles)?;
         let place = format!(
             "number {} of {count} by the particle filter's pose RMSE, seed 0",
-            rank + 1
+            count - rank
         );
-        Ok(Section {
-            title: format!("{}: {place}", section.title),
-            ..section
-        })
+        let title = format!("{}: {place}", section.title);
+        Ok((result.folder.clone(), Section { title, ..section }))
     };
     chosen.map(section).collect()
-}
-
-/// The particle filter's score, with the log's sensors and the camera as in the experiment.
-fn particle_score(result: &FolderResult) -> Option<f64> {
-    let mut methods = result.methods.iter();
-    let particle = methods.find(|scores| scores.variant == Variant::Particle)?;
-    particle.scores.wmse_mm
 }
 
 /// Every variant with the first seed.
@@ -61,7 +51,6 @@ fn section(folder: &Folder, model: FilterModel, particles: usize) -> Result<Sect
         occlusion,
         ..
     } = folder;
-    one_pusher(&experiment.setup.scene, "a report")?;
     let conditions = RunConditions {
         model,
         particles,

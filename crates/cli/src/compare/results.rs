@@ -1,5 +1,6 @@
 //! Results of a comparison: [`Comparison`], per folder and over folders.
 
+use std::cmp::Ordering;
 use std::path::Path;
 
 use anyhow::Result;
@@ -10,11 +11,10 @@ use stickslip_formats::Experiment;
 
 use super::best_baseline::BestBaseline;
 use super::folder_set::FolderSet;
-use crate::args::CompareArgs;
 use crate::failure::one_line;
 
 /// The scores of one run, or their medians over runs.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, Default, Serialize)]
 pub struct ShownScores {
     /// Weighted RMSE over the hidden rows, over all rows where none is hidden (mm).
     pub wmse_mm: Option<f64>,
@@ -93,6 +93,19 @@ pub struct FolderResult {
     pub warnings: Vec<String>,
     /// One entry per variant.
     pub methods: Vec<VariantScores>,
+}
+
+/// A scored run that a caller made.
+#[derive(Clone, Debug)]
+pub struct ComparedRun {
+    /// Its experiment folder.
+    pub folder: String,
+    /// The method.
+    pub variant: Variant,
+    /// Its scores.
+    pub scores: ShownScores,
+    /// Reasons to doubt them.
+    pub warnings: Vec<String>,
 }
 
 /// A folder that gave no result.
@@ -286,14 +299,8 @@ impl FolderResult {
         experiment: &Experiment,
         runs: impl Iterator<Item = (Variant, &'a Result<ShownScores>)>,
     ) -> Result<Self, &'a anyhow::Error> {
-        let mut by_variant: Vec<(Variant, Vec<ShownScores>)> = Vec::new();
-        for (variant, scores) in runs {
-            let scores = *scores.as_ref()?;
-            match by_variant.last_mut() {
-                Some((last, all)) if *last == variant => all.push(scores),
-                _ => by_variant.push((variant, vec![scores])),
-            }
-        }
+        let runs = runs.map(|(variant, scores)| Ok((variant, *scores.as_ref()?)));
+        let by_variant = by_variant(runs.collect::<Result<Vec<_>, _>>()?);
         let Experiment { setup, log, .. } = experiment;
         let unexplained = by_variant.iter().flat_map(|(variant, scores)| {
             let worst = scores.iter().max_by_key(|scores| scores.collapses)?;
@@ -304,19 +311,54 @@ impl FolderResult {
         let warnings = misread
             .map(|finding| finding.to_string())
             .chain(unexplained);
-        let warnings = warnings.collect();
-        let methods = by_variant
-            .into_iter()
-            .map(|(variant, scores)| VariantScores::new(variant, ShownScores::over_seeds(&scores)));
         Ok(Self {
-            warnings,
+            warnings: warnings.collect(),
             folder: folder.display().to_string(),
             stall_force: setup.scene.pusher.stall_force,
             stall_force_assumed: setup.stall_force_assumed,
             note: assumed_stall_force(setup).map(|finding| finding.to_string()),
-            methods: methods.collect(),
+            methods: over_seeds(&by_variant),
         })
     }
+
+    /// Medians over runs that a caller made of one folder.
+    fn of_runs(folder: &str, runs: &[&ComparedRun]) -> Self {
+        let scores = runs.iter().map(|run| (run.variant, run.scores));
+        let mut warnings = Vec::new();
+        for warning in runs.iter().flat_map(|run| &run.warnings) {
+            if !warnings.contains(warning) {
+                warnings.push(warning.clone());
+            }
+        }
+        Self {
+            folder: folder.to_owned(),
+            stall_force: None,
+            stall_force_assumed: false,
+            note: None,
+            warnings,
+            methods: over_seeds(&by_variant(scores)),
+        }
+    }
+}
+
+/// The scores of each variant, whose runs follow each other.
+fn by_variant(
+    runs: impl IntoIterator<Item = (Variant, ShownScores)>,
+) -> Vec<(Variant, Vec<ShownScores>)> {
+    let mut by_variant: Vec<(Variant, Vec<ShownScores>)> = Vec::new();
+    for (variant, scores) in runs {
+        match by_variant.last_mut() {
+            Some((last, all)) if *last == variant => all.push(scores),
+            _ => by_variant.push((variant, vec![scores])),
+        }
+    }
+    by_variant
+}
+
+fn over_seeds(runs: &[(Variant, Vec<ShownScores>)]) -> Vec<VariantScores> {
+    let of = runs.iter();
+    of.map(|(variant, scores)| VariantScores::new(*variant, ShownScores::over_seeds(scores)))
+        .collect()
 }
 
 impl LostFolder {
@@ -334,11 +376,15 @@ impl LostFolder {
 
 impl Comparison {
     /// The folders' results with quantiles over them.
-    pub fn new(args: &CompareArgs, folders: Vec<FolderResult>, errors: Vec<LostFolder>) -> Self {
+    pub fn new(
+        (particles, seeds): (usize, u64),
+        folders: Vec<FolderResult>,
+        errors: Vec<LostFolder>,
+    ) -> Self {
         let quantile = "linear between order statistics: position q (n - 1) from the smallest";
         Self {
-            particles: args.shared.particles,
-            seeds: args.seeds,
+            particles,
+            seeds,
             quantile,
             best_baseline: BestBaseline::of(&folders),
             touch_gain: TouchGain::of(&folders),
@@ -346,5 +392,28 @@ impl Comparison {
             folders,
             errors,
         }
+    }
+
+    /// Of runs that a caller made; those of one folder and method follow each other.
+    pub fn of_runs(runs: &[ComparedRun], particles: usize) -> Self {
+        let mut names: Vec<&str> = runs.iter().map(|run| run.folder.as_str()).collect();
+        names.dedup();
+        let folder = |name: &str| {
+            let own: Vec<&ComparedRun> = runs.iter().filter(|run| run.folder == name).collect();
+            FolderResult::of_runs(name, &own)
+        };
+        let own = |run: &ComparedRun| (run.folder.clone(), run.variant);
+        let seeds = runs.chunk_by(|a, b| own(a) == own(b)).map(<[_]>::len).max();
+        let folders = names.into_iter().map(folder).collect();
+        Self::new((particles, seeds.unwrap_or(0) as u64), folders, Vec::new())
+    }
+
+    /// Folders in which the particle filter has a score, its largest error first.
+    pub fn ranked(&self) -> Vec<&FolderResult> {
+        let score = |folder: &FolderResult| folder.scores(Variant::Particle)?.wmse_mm;
+        let scored = self.folders.iter();
+        let mut ranked: Vec<&FolderResult> = scored.filter(|of| score(of).is_some()).collect();
+        ranked.sort_by(|a, b| score(b).partial_cmp(&score(a)).unwrap_or(Ordering::Equal));
+        ranked
     }
 }

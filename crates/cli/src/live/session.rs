@@ -146,20 +146,20 @@ impl<'a> Session<'a> {
         let estimate = serde_json::from_str(&answer.text).ok()?;
         let latency = 1e3 * arrived.elapsed().as_secs_f64();
         let missed = self.pacing.as_ref().map(|_| self.latencies.missed());
-        let shown = ShownRow::new(row, estimate, self.tracker.particles(), (latency, missed));
+        let health = (latency, missed, self.collapses());
+        let shown = ShownRow::new(row, estimate, self.tracker.particles(), health);
         serde_json::to_string(&shown).ok()
     }
 
     /// Summary of the session, in words.
     pub fn summary(&self) -> Vec<String> {
-        let collapses = self.collapses + u64::from(self.tracker.collapses());
         let rows = format!(
             "{}, {} late; {} refused; {} after pauses; {}",
             counted(self.rows, "row"),
             self.late,
             counted(self.refused, "line"),
             counted(self.restarts, "restart"),
-            counted(collapses, "collapse")
+            counted(self.collapses(), "collapse")
         );
         let pacing = self.pacing.as_ref().map(|pacing| {
             let (fewest, most) = (pacing.fewest, self.options.particles);
@@ -174,6 +174,11 @@ impl<'a> Session<'a> {
         });
         let lines = [Some(rows), left_out, self.latencies.summary(), pacing];
         lines.into_iter().flatten().collect()
+    }
+
+    /// Collapses since the session began.
+    fn collapses(&self) -> u64 {
+        self.collapses + u64::from(self.tracker.collapses())
     }
 
     /// Effect of the deadline so far.

@@ -13,32 +13,37 @@ const DRAWN: usize = 60;
 pub struct ShownRow<'a> {
     estimate: &'a RawValue,
     object: Option<[f64; 3]>,
-    pusher: Option<[f64; 3]>,
+    fingers: Vec<Option<[f64; 3]>>,
     tactile: &'a [Option<bool>],
     particles: Vec<[f64; 3]>,
     count: usize,
     missed: Option<u64>,
+    collapses: u64,
     latency_ms: f64,
 }
 
 impl<'a> ShownRow<'a> {
     /// The row, the estimate's line of JSON, and how long the answer took (ms); `missed` answers
-    /// were late, where there is a deadline.
+    /// were late, where there is a deadline, and the filter collapsed `collapses` times.
     pub fn new(
         row: &'a Row,
         estimate: &'a RawValue,
         particles: Option<ParticleView<'_>>,
-        (latency_ms, missed): (f64, Option<u64>),
+        (latency_ms, missed, collapses): (f64, Option<u64>, u64),
     ) -> Self {
         let numbers = |pose: Pose| [pose.x, pose.y, pose.theta];
         Self {
             estimate,
             object: row.object.map(numbers),
-            pusher: row.pusher.map(numbers),
+            fingers: std::iter::once(row.pusher)
+                .chain(row.other_fingers.iter().copied())
+                .map(|pose| pose.map(numbers))
+                .collect(),
             tactile: &row.tactile,
             particles: particles.map_or(Vec::new(), |view| drawn(&view)),
             count: particles.map_or(0, |view| view.len()),
             missed,
+            collapses,
             latency_ms,
         }
     }

@@ -117,7 +117,7 @@ impl<'a> Replicates<'a> {
     fn rig(&self) -> Drawing {
         let experiment = &self.first().replicate.experiment;
         let scene = &experiment.setup.scene;
-        let mut bodies = Body::surroundings(scene, experiment.log.pusher[0].as_ref());
+        let mut bodies = Body::surroundings(scene, &experiment.log.fingers_at(0));
         let start = Reference::of(experiment).pose[0];
         bodies.extend(
             start.map(|pose| Body::new("", &scene.object.shape, &pose, Colour::INK).filled(0.12)),
@@ -268,7 +268,6 @@ impl<'a> Replicates<'a> {
         let mut pictures = Vec::new();
         for (row, variants) in rows {
             let truth = Reference::of(experiment).pose[*row];
-            let pusher = experiment.log.pusher[*row];
             for (column, variant) in variants.iter().enumerate() {
                 let run = first.run(*variant);
                 let pose = run.and_then(|run| run.estimate.rows.get(*row)?.pose);
@@ -276,7 +275,7 @@ impl<'a> Replicates<'a> {
                     0 => format!("{}, row {row}", variant.paper_title()),
                     _ => variant.paper_title().to_owned(),
                 };
-                let mut bodies = Body::surroundings(scene, pusher.as_ref());
+                let mut bodies = Body::surroundings(scene, &experiment.log.fingers_at(*row));
                 bodies.extend(truth.map(|pose| body(pose, Colour::INK).filled(0.12)));
                 bodies.extend(pose.map(|pose| body(pose, Colour::of(*variant)).filled(0.25)));
                 let overlay = Overlay {

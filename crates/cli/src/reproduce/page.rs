@@ -7,8 +7,8 @@ use stickslip_evaluation::paper::{
     Cell, PaperExperiment, ResultsRow, ResultsTable, RunSet, RunSettings,
 };
 use stickslip_report::{
-    Block, Colour, Figure, Report, ReportedExperiment, Section, StripGroup, StripLane, StripPlot,
-    Table,
+    Block, Colour, Figure, Report, ReportedExperiment, Scale, Section, StripGroup, StripLane,
+    StripPlot, Table,
 };
 
 use super::text::{about_occlusions, band, counts, median, occlusions, orders, touch};
@@ -104,6 +104,7 @@ fn strip(table: &ResultsTable) -> StripPlot {
         colour: Colour::of(cell.variant),
         values: cell.seeds_mm.clone(),
         mark: Some(cell.paper_mm),
+        ..StripLane::default()
     };
     let group = |row: &ResultsRow| StripGroup {
         name: row.title.to_owned(),
@@ -118,7 +119,8 @@ pub fn paper_strip(label: String, groups: Vec<StripGroup>) -> StripPlot {
     StripPlot {
         label,
         x_label: "pose RMSE over all rows (mm)".to_owned(),
-        floor: 0.05,
+        scale: Scale::Log { floor: 0.05 },
+        level: None,
         mark_name: "paper".to_owned(),
         groups,
     }

@@ -150,6 +150,7 @@ fn strip(results: &PinnedResults) -> StripPlot {
                 colour: Colour::of(variant),
                 values: own.filter_map(|scene| quantile(of(scene), 0.5)).collect(),
                 mark: group.published(variant),
+                ..StripLane::default()
             }
         };
     let group = |group: PinnedGroup| StripGroup {

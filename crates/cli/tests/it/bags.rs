@@ -16,6 +16,7 @@ fn rows(log: &Log, from: usize, to: usize) -> Log {
         object: log.object[from..to].to_vec(),
         object_covariance: Vec::new(),
         pusher: log.pusher[from..to].to_vec(),
+        other_fingers: Vec::new(),
         tactile: log
             .tactile
             .iter()

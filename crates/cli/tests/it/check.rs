@@ -341,8 +341,8 @@ fn check_reports_an_unreadable_scene_as_an_error() {
 }
 
 #[test]
-#[cfg_attr(not(stickslip_data), ignore = "no recorded data: set STICKSLIP_DATA")]
-fn check_measures_the_delay_of_the_two_finger_logs() {
+#[ignore = "needs recorded experiments"]
+fn check_measures_the_delay_of_the_recorded_two_finger_logs() {
     let root = stickslip_testkit::data_root().unwrap();
     let folders = std::fs::read_dir(root.join("real/zhou-two-finger"))
         .unwrap()
@@ -369,7 +369,7 @@ fn check_measures_the_delay_of_the_two_finger_logs() {
 }
 
 #[test]
-#[cfg_attr(not(stickslip_data), ignore = "no recorded data: set STICKSLIP_DATA")]
+#[ignore = "needs recorded experiments"]
 fn check_finds_no_problem_in_recorded_data() {
     let root = stickslip_testkit::data_root().unwrap();
     let sets = [

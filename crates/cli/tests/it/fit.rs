@@ -75,7 +75,7 @@ fn fit_writes_a_scene_that_filters_and_keeps_its_comments() {
     assert_eq!([&mu_p["determined"], &mu_f["determined"]], [true, false]);
     let [value, std] = ["value", "std"].map(|key| number(&mu_p[key]));
     assert!((value - 0.5).abs() < 3.0 * std && std < 0.1, "{mu_p}");
-    assert_eq!(number(&mu_f["value"]), 0.25);
+    assert!((number(&mu_f["value"]) - 0.25).abs() < 0.05, "{mu_f}");
 
     // both stand in the scene, which other commands take
     let scene = fs::read_to_string(out.join("scene.toml")).unwrap();
@@ -179,7 +179,7 @@ fn push_that_touches_nothing_is_no_push() {
     let told = String::from_utf8_lossy(&run.stderr);
     assert_eq!(run.status.code(), Some(1), "{told}");
     assert!(
-        told.contains("push-1: nothing touches the object") && told.contains("leave it out"),
+        told.contains("push-1: nothing touches the object") && told.contains("It is no push"),
         "{told}"
     );
 }

@@ -177,7 +177,7 @@ fn filter_writes_a_report_and_the_same_estimate() {
     let page = fs::read_to_string(page).unwrap();
     for text in [
         "class=\"player\"",
-        "The camera turns off at 5.1 s, 0.2 s before the object touches a fixel, and stays off.",
+        "The camera turns off at 5.1 s, 0.2 s before the object touches a <abbr title=\"a fixed body",
         "<h1>filter_report: particle filter</h1>",
         "download=\"filter_report-estimate.csv\"",
         "--occlude 153",
@@ -219,6 +219,35 @@ fn compare_writes_a_report_of_all_folders() {
         assert!(page.contains(text), "{text}");
     }
     assert!(!page.contains("particle, no tactile"), "one name for each");
+}
+
+/// Over several logs: a dot per log and method, and the worst logs lead to their players.
+#[test]
+fn compare_draws_logs_and_links_the_worst() {
+    let names = ["first", "second", "third"].map(|name| format!("compare_pictures/{name}"));
+    let [one, ..] = names.map(|name| Experiment::copy(STOP, &name));
+    let parent = one.folder.parent().unwrap();
+    let page = parent.join("report.html");
+    succeeds(
+        stickslip()
+            .arg("compare")
+            .arg(parent)
+            .arg("--report")
+            .arg(&page)
+            .args(FEW),
+    );
+    let page = fs::read_to_string(page).unwrap();
+    // errors of ten methods, ratios of nine, coverage of the nine with a spread; wide and narrow
+    let dots = page.matches("<title>second: ").count();
+    assert_eq!(dots, 2 * (10 + 9 + 9));
+    for name in ["first", "second", "third"] {
+        let (_, link) = page.split_once(&format!("href=\"#{name}-number-")).unwrap();
+        let (rank, _) = link.split_once('"').unwrap();
+        let place = format!("id=\"{name}-number-{rank}\"");
+        let (_, section) = page.split_once(&place).unwrap();
+        let (section, _) = section.split_once("</svg>").unwrap();
+        assert!(section.contains("class=\"player\""), "{name}");
+    }
 }
 
 /// A log's clock reads seconds since 1970; a page that counts from the log's start says from when.

@@ -6,7 +6,7 @@
 //! rest one by one. Whatever route an answer came by, it counts as solved only where
 //! [`Ncp::certifies`] says so.
 
-use stickslip_lanes::{Lanes, Level, on_fused, on_widest};
+use stickslip_lanes::{Lanes, Level, on_fused, on_lanes};
 
 use crate::ncp::natural_map::NaturalMap;
 use crate::ncp::problem::{StepProblem, StepSolution};
@@ -235,7 +235,8 @@ impl<const W: usize> Solver<W> {
         z: &mut [Unknowns<W>],
         reports: &mut [[Report; W]],
     ) {
-        on_widest(
+        // where it returns `None`, steps of eight particles are not compiled either
+        let _ = on_lanes::<W, ()>(
             level,
             #[inline(always)]
             || self.follow_paths(source, ncps, z, reports),

@@ -3,7 +3,7 @@
 //! Where the compliance κ is large, contacts carry little and the solution is near the free motion;
 //! from there κ falls step by step, and every solution is the start of the next.
 
-use stickslip_lanes::{Lanes, Level, on_widest};
+use stickslip_lanes::{Lanes, Level, on_fused};
 
 use crate::ncp::report::TOLERANCE;
 use crate::ncp::rows::Ncp;
@@ -103,7 +103,7 @@ impl CompliantNewton {
     fn solve_at(&mut self, systems: &mut u32) -> bool {
         self.trial.copy_from(&self.z);
         let (ncp, trial, newton) = (&self.ncp, &mut self.trial, &mut self.newton);
-        let end = on_widest(
+        let end = on_fused(
             self.level,
             #[inline(always)]
             || newton.solve(ncp, trial, SETTINGS),

@@ -1,6 +1,6 @@
 //! From a point near a solution to a certified one, one particle at a time: [`Refiner`].
 
-use stickslip_lanes::{Lanes, Level, Mask, on_widest};
+use stickslip_lanes::{Lanes, Level, Mask, on_fused};
 
 use crate::ncp::natural_map::NaturalMap;
 use crate::ncp::report::TOLERANCE;
@@ -87,7 +87,7 @@ impl Refiner {
         settings: NewtonSettings,
     ) -> Judged {
         self.z.copy_from(start);
-        let end = on_widest(
+        let end = on_fused(
             self.level,
             #[inline(always)]
             || self.newton.solve(ncp, &mut self.z, settings),
@@ -100,7 +100,7 @@ impl Refiner {
 
     /// Newton steps in the modes that `self.z` shows: its residual then, and how many.
     fn fixed_modes(&mut self, ncp: &Ncp<1>, sliding: f64) -> (f64, u32) {
-        on_widest(
+        on_fused(
             self.level,
             #[inline(always)]
             || {

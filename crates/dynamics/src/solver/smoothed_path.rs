@@ -9,7 +9,7 @@
 
 use std::slice::from_ref;
 
-use stickslip_lanes::{Lanes, Level, Mask, on_widest};
+use stickslip_lanes::{Lanes, Level, Mask, on_fused};
 
 use crate::ncp::natural_map::NaturalMap;
 use crate::ncp::report::TOLERANCE;
@@ -290,7 +290,7 @@ impl SmoothedPath<1> {
         };
         let mut end = (f64::INFINITY, 0);
         z.resize(ncp.contacts.len());
-        on_widest(
+        on_fused(
             level,
             #[inline(always)]
             || {

@@ -2,7 +2,7 @@
 
 use stickslip_dynamics::{
     Body, Dynamics, Feet, FingerMotion, Fixel, Friction, Lanes, Level, Object, Offsets, Part,
-    Particle, Particles, Pose, Pusher, Scene, Shape, StepInput, StepWork, Twist,
+    Particle, Particles, Pose, Pusher, Scene, Shape, StepInput, StepWork, Support, Twist,
 };
 
 const FRICTION: Friction = Friction {
@@ -102,7 +102,7 @@ fn lanes_step_as_alone(level: Level) {
             pusher: &pushers,
             pusher_turn: &[],
             fixels: &places,
-            foot_offsets: &[],
+            supports: &[],
         };
         dynamics.step_block_offset(&push(step, [0.0; 2]), offsets, &mut chunk, &mut work);
         for (i, particle) in alone.iter_mut().enumerate() {
@@ -166,7 +166,7 @@ fn a_turned_pusher_is_one_whose_pose_is_turned() {
             pusher: &[[Lanes::ZERO; 2]],
             pusher_turn: &turns,
             fixels: &[[Lanes::ZERO; 2]; 2],
-            foot_offsets: &[],
+            supports: &[],
         };
         dynamics.step_block_offset(&push(step, [0.0; 2]), offsets, &mut chunk, &mut work);
         for (i, particle) in alone.iter_mut().enumerate() {
@@ -193,9 +193,8 @@ fn a_turned_pusher_is_one_whose_pose_is_turned() {
     );
 }
 
-/// Feet in a frame of their own are known feet at the same places.
 #[test]
-fn feet_in_a_frame_of_their_own_stand_where_known_feet_do() {
+fn an_image_of_the_feet_is_known_feet_at_its_places() {
     for level in [Level::new(), Level::baseline()] {
         feet_stand_as_known(level, None);
         feet_stand_as_known(level, Some(Pose::new(-6e-3, 2e-3, 0.8)));
@@ -206,23 +205,25 @@ fn feet_in_a_frame_of_their_own_stand_where_known_feet_do() {
 /// tripod in the frame `about`: these turn about their own centre.
 fn feet_stand_as_known(level: Level, about: Option<Pose>) {
     const LANES: usize = 8;
-    let frame = |i: usize| {
-        Pose::new(
-            1e-3 * (i as f64 - 4.0),
-            2e-3 - 5e-4 * i as f64,
-            0.2 * i as f64,
-        )
+    let image = |i: usize| Support {
+        centre: [1e-3 * (i as f64 - 4.0), 2e-3 - 5e-4 * i as f64],
+        map: [
+            [1.0 + 0.05 * i as f64, -0.1],
+            [0.1 * i as f64, 1.0 - 0.08 * i as f64],
+        ],
     };
-    let beside = about.map_or_else(|| scene([[0.0; 2]; 2]), on_known_feet);
+    let beside = about.map_or_else(
+        || scene([[0.0; 2]; 2]),
+        |about| on_known_feet(about, Support::default()),
+    );
     let dynamics = Dynamics::new(beside).with_level(level);
     let about = about.unwrap_or_default();
     let mut chunk = [Particles::<LANES>::default()];
     (0..LANES).for_each(|i| chunk[0].set(i, &Particle::default(), &FRICTION));
-    let column = |of: &dyn Fn(Pose) -> f64| Lanes(std::array::from_fn(|i| of(frame(i))));
-    let frames = [Pose {
-        x: column(&|frame| frame.x),
-        y: column(&|frame| frame.y),
-        theta: column(&|frame| frame.theta),
+    let column = |of: &dyn Fn(Support) -> f64| Lanes(std::array::from_fn(|i| of(image(i))));
+    let images = [Support {
+        centre: [0, 1].map(|k| column(&|image| image.centre[k])),
+        map: [0, 1].map(|k| [0, 1].map(|l| column(&|image| image.map[k][l]))),
     }];
     let mut work = StepWork::default();
     let mut alone: Vec<Particle> = vec![Particle::default(); LANES];
@@ -232,14 +233,12 @@ fn feet_stand_as_known(level: Level, about: Option<Pose>) {
             pusher: &[[Lanes::ZERO; 2]],
             pusher_turn: &[],
             fixels: &[[Lanes::ZERO; 2]; 2],
-            foot_offsets: &frames,
+            supports: &images,
         };
         dynamics.step_block_offset(&push(step, [0.0; 2]), offsets, &mut chunk, &mut work);
         for (i, particle) in alone.iter_mut().enumerate() {
             let mut one = [*particle];
-            let Pose { x, y, theta } = frame(i);
-            let stand = Pose::new(x + about.x, y + about.y, theta + about.theta);
-            Dynamics::new(on_known_feet(stand)).step(
+            Dynamics::new(on_known_feet(about, image(i))).step(
                 &push(step, [0.0; 2]),
                 &[FRICTION],
                 &mut one,
@@ -259,19 +258,21 @@ fn feet_stand_as_known(level: Level, about: Option<Pose>) {
     assert!(apart.fold(0.0, f64::max) > 1e-3, "{turned:?}");
 }
 
-/// The scene on three known feet, where those of a tripod in `frame` stand.
-fn on_known_feet(frame: Pose) -> Scene {
+/// The scene on three known feet: those of a tripod in the frame `about`, of which this is an
+/// image.
+fn on_known_feet(about: Pose, image: Support) -> Scene {
     let mut scene = scene([[0.0; 2]; 2]);
     let Feet::Tripod { angle } = scene.feet else {
         panic!("a tripod");
     };
     let positions = [0.0, 1.0, 2.0].map(|third: f64| {
-        let direction = frame.theta + angle + third * std::f64::consts::TAU / 3.0;
+        let direction = about.theta + angle + third * std::f64::consts::TAU / 3.0;
         let (sin, cos) = libm::sincos(direction);
-        [
-            frame.x + FRICTION.d_tri * cos,
-            frame.y + FRICTION.d_tri * sin,
-        ]
+        let place = |k: usize, centre: f64| {
+            let [x, y] = image.map[k];
+            centre + image.centre[k] + FRICTION.d_tri * (x * cos + y * sin)
+        };
+        [place(0, about.x), place(1, about.y)]
     });
     scene.feet = Feet::Known {
         positions,

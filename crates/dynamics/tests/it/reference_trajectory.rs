@@ -49,8 +49,8 @@ fn mask(work: &StepWork<1>) -> u32 {
 }
 
 #[test]
-#[cfg_attr(not(stickslip_data), ignore = "no recorded data: set STICKSLIP_DATA")]
-fn step_follows_the_reference_over_600_frames_to_a_micrometre() {
+#[ignore = "needs recorded experiments"]
+fn step_follows_the_recorded_reference_over_600_frames_to_a_micrometre() {
     let rows = reference();
     assert_eq!(rows.len(), 600);
     let dynamics = Dynamics::new(bench_scene());

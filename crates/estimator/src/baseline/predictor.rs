@@ -1,9 +1,10 @@
-//! The nominal simulation of one log with many frictions, side by side: [`NominalPredictor`].
+//! The nominal simulation of one log on many surfaces, side by side: [`NominalPredictor`].
 
 use std::sync::Arc;
 
 use stickslip_dynamics::{
-    CompiledStep, Dynamics, Friction, Outcome, Particle, Particles, Pose, Scene, StepWork,
+    CompiledStep, Dynamics, Friction, Lanes, Offsets, Outcome, Particle, Particles, Pose, Scene,
+    StepWork, Support,
 };
 
 use crate::error::RunError;
@@ -36,6 +37,25 @@ pub struct NominalPrediction {
     pub poses: Vec<Pose>,
     /// Steps without a certified solution.
     pub unsolved: u32,
+}
+
+/// Friction and support that may differ between predictions in one scene.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Surface {
+    /// Friction parameters.
+    pub friction: Friction,
+    /// Image of the scene's feet.
+    pub support: Support,
+}
+
+impl From<Friction> for Surface {
+    /// On the scene's feet.
+    fn from(friction: Friction) -> Self {
+        Self {
+            friction,
+            support: Support::default(),
+        }
+    }
 }
 
 impl NominalPredictor {
@@ -73,10 +93,10 @@ impl NominalPredictor {
         &self.schedule
     }
 
-    /// Predicts the log once with each of `frictions`, as [`run`](crate::run) with the nominal
+    /// Predicts the log once with each of `surfaces`, as [`run`](crate::run) with the nominal
     /// simulation does with that of the scene, bit for bit. It runs on one thread.
-    pub fn predict(&self, frictions: &[Friction]) -> Vec<NominalPrediction> {
-        let chunks = frictions.chunks(LANES).map(|chunk| match chunk {
+    pub fn predict(&self, surfaces: &[Surface]) -> Vec<NominalPrediction> {
+        let chunks = surfaces.chunks(LANES).map(|chunk| match chunk {
             [one] => Vec::from(self.predict_lanes(&[*one])),
             several => {
                 // lanes that are left repeat the last one
@@ -90,17 +110,24 @@ impl NominalPredictor {
         chunks.flatten().collect()
     }
 
-    fn predict_lanes<const W: usize>(&self, frictions: &[Friction; W]) -> [NominalPrediction; W]
+    fn predict_lanes<const W: usize>(&self, surfaces: &[Surface; W]) -> [NominalPrediction; W]
     where
         StepWork<W>: CompiledStep<W>,
     {
+        // offsets of none, but for the feet
+        let pusher = [[Lanes::ZERO; 2]];
+        let fixels = vec![[Lanes::ZERO; 2]; self.dynamics.scene().fixels.len()];
+        let support = support_lanes(surfaces);
+        let image = surfaces
+            .iter()
+            .any(|surface| surface.support != Support::default());
         let mut particles = [Particles::<W>::default()];
         let start = Particle {
             pose: self.start,
             ..Particle::default()
         };
-        for (lane, friction) in frictions.iter().enumerate() {
-            particles[0].set(lane, &start, friction);
+        for (lane, surface) in surfaces.iter().enumerate() {
+            particles[0].set(lane, &start, &surface.friction);
         }
         let mut predictions = std::array::from_fn(|_| NominalPrediction {
             poses: Vec::with_capacity(self.rows - self.first),
@@ -118,7 +145,18 @@ impl NominalPredictor {
         for row in self.first..self.rows - 1 {
             particles[0].limit_pusher_lag(self.most_lag);
             for input in self.schedule.step(row) {
-                self.dynamics.step_block(input, &mut particles, &mut work);
+                if image {
+                    let offsets = Offsets {
+                        pusher: &pusher,
+                        pusher_turn: &[],
+                        fixels: &fixels,
+                        supports: &support,
+                    };
+                    self.dynamics
+                        .step_block_offset(input, offsets, &mut particles, &mut work);
+                } else {
+                    self.dynamics.step_block(input, &mut particles, &mut work);
+                }
                 for (prediction, report) in predictions.iter_mut().zip(&work.reports()[0]) {
                     prediction.unsolved += u32::from(report.outcome != Outcome::Solved);
                 }
@@ -127,4 +165,15 @@ impl NominalPredictor {
         }
         predictions
     }
+}
+
+/// Supports side by side.
+fn support_lanes<const W: usize>(surfaces: &[Surface; W]) -> [Support<Lanes<W>>; 1] {
+    let lanes = |of: &dyn Fn(&Support) -> f64| {
+        Lanes(std::array::from_fn(|lane| of(&surfaces[lane].support)))
+    };
+    [Support {
+        centre: [0, 1].map(|k| lanes(&|support| support.centre[k])),
+        map: [0, 1].map(|k| [0, 1].map(|l| lanes(&|support| support.map[k][l]))),
+    }]
 }

@@ -72,6 +72,7 @@ impl FilterOptions<'_> {
 }
 
 /// The particle filter, with the estimate at the latest row.
+#[derive(Clone)]
 pub(crate) struct ContactFilter<'o> {
     filter: ParticleFilter<ContactModel<'o>>,
     history: PoseHistory,

@@ -33,7 +33,9 @@ type Steps = Vec<Vec<Stand>>;
 
 /// Stands of the particles in all runs.
 fn feet() -> Vec<Steps> {
-    let setup = setup(&[]);
+    let mut setup = setup(&[]);
+    // so that an angle is that of the turn alone
+    setup.uncertainty.foot_stretch = 0.0;
     let told = setup.uncertainty.centre_of_friction * setup.scene.object.gyration_radius();
     let stand = |arms: &[[f64; 2]; 3]| -> Stand {
         let centre = [0, 1].map(|axis| arms.iter().map(|arm| arm[axis]).sum::<f64>() / 3.0);

@@ -101,6 +101,8 @@ fn after_warm_up_a_row_allocates_nothing_on_one_thread() {
     let mut setup = with_latency(setup, 0.05);
     // by default, a few steps of this log need the mode search, which allocates
     setup.uncertainty.pusher_lag = 1.0;
+    // and under feet that are stretched far, a buffer grows in one of these rows
+    setup.uncertainty.foot_stretch = 0.1;
     // the pusher pushes; once the object comes to a fixel, some steps need it, too
     let rows: Vec<Row> = (0..76).map(|row| log.row(row)).collect();
     let pool = rayon::ThreadPoolBuilder::new()

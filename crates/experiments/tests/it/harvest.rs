@@ -21,7 +21,7 @@ fn harvest_below(root: &Path, options: &HarvestOptions) -> Vec<Harvest> {
 }
 
 #[test]
-#[cfg_attr(not(stickslip_data), ignore = "no recorded data: set STICKSLIP_DATA")]
+#[ignore = "needs recorded experiments"]
 fn every_step_of_every_recorded_log_is_solved_to_a_nanometre_per_second() {
     let root = data_root().expect("recorded data");
     let harvests = harvest_below(&root, &OPTIONS);
@@ -63,8 +63,8 @@ fn every_step_of_every_recorded_log_is_solved_to_a_nanometre_per_second() {
 
 /// The sample is a pure function of the experiment: its failures can be found again.
 #[test]
-#[cfg_attr(not(stickslip_data), ignore = "no recorded data: set STICKSLIP_DATA")]
-fn harvest_keeps_the_same_steps_every_time() {
+#[ignore = "needs recorded experiments"]
+fn harvest_of_a_recorded_log_keeps_the_same_steps_every_time() {
     let root = data_root()
         .expect("recorded data")
         .join("mujoco/stop-square50-bar-000");

@@ -40,6 +40,15 @@ impl<S> PerThread<S> {
     }
 }
 
+impl<S: Clone> Clone for PerThread<S> {
+    fn clone(&self) -> Self {
+        let slots = self.slots.iter().map(|slot| Mutex::new(lock(slot).clone()));
+        Self {
+            slots: slots.collect(),
+        }
+    }
+}
+
 /// Slot that the calling thread tries first.
 fn own_slot(slots: usize) -> usize {
     rayon::current_thread_index().unwrap_or(0) % slots

@@ -77,6 +77,62 @@ fn centre_of_friction_is_found_and_written() {
     assert!((written.uncertainty.tripod_angle / before - 1.0).abs() < 1e-5);
 }
 
+/// Feet at the corners of a flat triangle, that the scene takes for a circle's: the image that the
+/// fit writes has their centre and second moments.
+#[test]
+fn any_triangle_of_feet_is_found() {
+    let mut truth = setup();
+    let positions = [[0.030, 0.012], [-0.036, 0.006], [0.004, -0.014]];
+    truth.scene.feet = Feet::Known {
+        positions,
+        loads: [1.0 / 3.0; 3],
+    };
+    let (pushes, fit) = learnt(&truth, &["mu_p", "support"], |_| ());
+    let text = fit.scene_text(common::SCENE, "scene.toml", None).unwrap();
+    let written = stickslip_formats::read_scene(&text, "scene.toml").unwrap();
+    let Feet::Known {
+        positions: found, ..
+    } = written.scene.feet
+    else {
+        panic!("known feet in {text}");
+    };
+    let corners = [0.0, 1.0, -1.0].map(|k: f64| {
+        let (sin, cos) = libm::sincos(1.571 + 2.0944 * k);
+        let d_tri = pushes[0].setup.scene.nominal.d_tri;
+        [d_tri * cos, d_tri * sin]
+    });
+    let off = |feet: [[f64; 2]; 3]| {
+        let [found, truly] = [feet, positions].map(moments);
+        let squares = found.iter().zip(truly).map(|(a, b)| (a - b) * (a - b));
+        squares.sum::<f64>().sqrt()
+    };
+    assert!(off(found) < 0.4 * off(corners), "{found:?}");
+    assert!(fit.sampling.settled, "{:?}", fit.sampling);
+
+    // feet that are written as known are as uncertain as the fit left them
+    let unsure = written.uncertainty;
+    let spreads = [
+        unsure.friction.d_tri,
+        unsure.centre_of_friction,
+        unsure.foot_stretch,
+    ];
+    assert!(
+        spreads.iter().all(|std| (0.005..0.3).contains(std)),
+        "{unsure:?}"
+    );
+}
+
+/// Centre (m), and roots of the second moments about it (m), of equal feet.
+fn moments(feet: [[f64; 2]; 3]) -> [f64; 5] {
+    let mean = |of: &dyn Fn([f64; 2]) -> f64| feet.into_iter().map(of).sum::<f64>() / 3.0;
+    let [x, y] = [0, 1].map(|k| mean(&|foot| foot[k]));
+    let second = |a: usize, b: usize| {
+        let moment = mean(&|foot| (foot[a] - [x, y][a]) * (foot[b] - [x, y][b]));
+        moment.abs().sqrt().copysign(moment)
+    };
+    [x, y, second(0, 0), second(0, 1), second(1, 1)]
+}
+
 /// As far as its noisy track allows, see below.
 #[test]
 fn offset_of_the_pusher_is_found() {

@@ -2,7 +2,7 @@
 
 use crate::common::pushes;
 use stickslip::dynamics::{Friction, Pose};
-use stickslip::{Method, NominalPredictor, RunOptions, run};
+use stickslip::{Method, NominalPredictor, RunOptions, Surface, run};
 use stickslip_evaluation::Physics;
 
 /// The nominal simulation of a run is another loop over the same step.
@@ -34,11 +34,12 @@ fn predictions_are_nominal_simulations_bit_for_bit() {
             ..friction
         })
         .collect();
-    let together = predictor.predict(&frictions);
+    let surfaces: Vec<Surface> = frictions.iter().map(|one| (*one).into()).collect();
+    let together = predictor.predict(&surfaces);
     assert_eq!(together.len(), 11);
     for (friction, prediction) in frictions.iter().zip(&together) {
         assert_eq!(prediction.poses, simulated(*friction));
-        assert_eq!(predictor.predict(&[*friction])[0], *prediction);
+        assert_eq!(predictor.predict(&[(*friction).into()])[0], *prediction);
     }
     assert_ne!(together[0].poses, together[1].poses);
 }

@@ -141,7 +141,7 @@ impl CameraTopics {
         match self.sensors.carries(name) {
             Some(Topic::Fixel(_)) => true,
             Some(Topic::Wrench) => self.sensors.is_mapped(Topic::Wrench),
-            Some(Topic::Object | Topic::Pusher) | None => false,
+            Some(Topic::Object | Topic::Pusher | Topic::Finger(_)) | None => false,
         }
     }
 }

@@ -45,12 +45,12 @@ impl Body<'_> {
     }
 }
 
-/// All bodies: the object at its estimated pose, the pusher and the fixels.
+/// All bodies: the object at its estimated pose, the pusher, the fixels, a hand's other fingers.
 pub(crate) fn bodies<'a>(
     setup: &'a Setup,
     row: &EstimateRow,
     object: Pose,
-    pusher: Option<Pose>,
+    fingers: &[Option<Pose>],
 ) -> Vec<Body<'a>> {
     let scene = &setup.scene;
     let touched = |contact: Option<f64>| contact.is_some_and(|contact| contact > 0.5);
@@ -66,7 +66,7 @@ pub(crate) fn bodies<'a>(
             namespace: "pusher",
             colour: PUSHER,
             shape: &scene.pusher.fingers[0],
-            pose: pusher,
+            pose: fingers.first().copied().flatten(),
             touched: touched(row.contact_pusher),
         },
     ];
@@ -78,6 +78,18 @@ pub(crate) fn bodies<'a>(
         pose: Some(fixel.pose),
         touched: touched(contacts.get(k).copied()),
     }));
+    let others = scene.pusher.fingers.iter().zip(fingers).skip(1);
+    bodies.extend(
+        others
+            .zip(scene.fixels.len()..)
+            .map(|((shape, pose), k)| Body {
+                namespace: "pusher",
+                colour: PUSHER,
+                shape,
+                pose: *pose,
+                touched: touched(contacts.get(k).copied()),
+            }),
+    );
     bodies
 }
 

@@ -140,13 +140,13 @@ pub enum McapProblem {
         /// fx of this one (px).
         now: f64,
     },
-    /// Fixels are misnumbered.
+    /// Sensors or fingers are misnumbered.
     #[error(
-        "sensors are numbered fixel_1, fixel_2, ... without gaps, and fixel_{missing} is not there. Map fixel_{missing} to a topic, in the order of the [[fixel]] tables"
+        "{missing} is not there, and a later number is; numbers go on without gaps. Map {missing} to a topic, in the order of the scene's tables"
     )]
-    SensorNumber {
+    Gap {
         /// The first missing one.
-        missing: usize,
+        missing: Topic,
     },
     /// A topic of another message type.
     #[error(

@@ -4,12 +4,12 @@
 use std::io::{Seek, Write};
 
 use mcap::Compression;
-use stickslip::{Estimate, EstimateRow, Setup};
-use stickslip_dynamics::{Friction, Pose};
+use stickslip::{Estimate, EstimateRow, Log, Setup};
+use stickslip_dynamics::Pose;
 
-use crate::belief_columns;
+use crate::estimate_columns::estimate_columns;
 use crate::log_mcap::drawing::{Body, bodies, markers, outline_points};
-use crate::log_mcap::output_message::{MarkerArray, Numbers, PointCloud, PoseArray};
+use crate::log_mcap::output_message::{Float64, MarkerArray, PointCloud, PoseArray};
 use crate::log_mcap::pose_message::{PoseWithCovarianceStamped, TfMessage, TransformStamped};
 use crate::log_mcap::write::{McapWriteError, Recorder, header, pose_parts, stamps};
 use crate::number;
@@ -21,42 +21,48 @@ use crate::number;
 ///   of x, y and the angle about z; the rest is 0, and so are values that the method does not have,
 /// - `/tf`, `tf2_msgs/msg/TFMessage`: the frame `stickslip_object` in `world`,
 /// - `/stickslip/markers`, `visualization_msgs/msg/MarkerArray`: outlines of the object, of the
-///   pusher at its pose in `pusher` and of the fixels, red where contact is likelier than not,
+///   pusher's fingers at their poses in `log` and of the fixels, red where contact is likelier than
+///   not,
 /// - `/stickslip/particles`, `geometry_msgs/msg/PoseArray`: row by row the poses of `cloud`,
 ///   particles that count the same; none where the slice is shorter or the row has none,
 /// - `/stickslip/points/...`, `sensor_msgs/msg/PointCloud2`, for viewers without markers: points
 ///   along the outlines of the `object`, and of `pusher` and `fixels` where they are not `touched`;
 ///   `particles`,
-/// - `/stickslip/friction`, `friction_std`, `contacts`, `health` and `belief`,
-///   `std_msgs/msg/Float64MultiArray`: numbers of `estimate.csv`, the columns that the label of the
-///   dimension names; NaN for empty cells.
+/// - `/stickslip/NAME`, `std_msgs/msg/Float64`, for each column of `estimate.csv` that is not
+///   empty: its number, NaN for an empty cell.
 ///
 /// Equal estimates give equal bytes.
 ///
 /// # Errors
-/// A time that a stamp cannot hold, two rows within a nanosecond, a hand of several
-/// fingers, or what `writer` says.
+/// A time that a stamp cannot hold, two rows within a nanosecond, or what `writer` says.
 pub fn write_estimate_mcap(
     writer: impl Write + Seek,
     estimate: &Estimate,
     cloud: &[Vec<Pose>],
-    pusher: &[Option<Pose>],
+    log: &Log,
     setup: &Setup,
 ) -> Result<(), McapWriteError> {
-    match setup.scene.pusher.fingers.len() {
-        1 => {}
-        fingers => return Err(McapWriteError::Fingers(fingers - 1)),
-    }
     let has_particles = cloud.iter().any(|poses| !poses.is_empty());
-    let mut messages = Messages::new(writer, has_particles, estimate.has_tripod)?;
+    let mut columns = estimate_columns(estimate).split_off(1);
+    columns.retain(|(_, column)| column.iter().any(|number| number.is_finite()));
+    let mut messages = Messages::new(writer, has_particles)?;
+    let plots = columns.iter();
+    let plots = plots.map(|(name, _)| {
+        messages
+            .recorder
+            .topic::<Float64>(&format!("/stickslip/{name}"))
+    });
+    let plots: Vec<u16> = plots.collect::<Result<_, _>>()?;
     let stamps = stamps(&estimate.time)?;
     for (k, (stamp, row)) in stamps.into_iter().zip(&estimate.rows).enumerate() {
         let Some(pose) = row.pose else { continue };
         messages.write_pose(stamp, pose, row)?;
-        let pusher = pusher.get(k).copied().flatten();
-        messages.write_bodies(stamp, &bodies(setup, row, pose, pusher))?;
+        messages.write_bodies(stamp, &bodies(setup, row, pose, &log.fingers_at(k)))?;
         messages.write_particles(stamp, cloud.get(k).map_or(&[], Vec::as_slice))?;
-        messages.write_numbers(stamp, row)?;
+        for (topic, (_, column)) in plots.iter().zip(&columns) {
+            let number = Float64 { data: column[k] };
+            messages.recorder.write(Some(*topic), stamp, Some(number))?;
+        }
     }
     messages.recorder.finish()
 }
@@ -67,18 +73,16 @@ const CLOUDS: [&str; 4] = ["object", "pusher", "fixels", "touched"];
 /// The messages of an estimate while they are written.
 struct Messages<W: Write + Seek> {
     recorder: Recorder<W>,
-    has_tripod: bool,
     pose: u16,
     tf: u16,
     markers: u16,
     /// Topics of the particles, as poses and as points.
     particles: Option<[u16; 2]>,
     clouds: [u16; 4],
-    numbers: [u16; 5],
 }
 
 impl<W: Write + Seek> Messages<W> {
-    fn new(writer: W, has_particles: bool, has_tripod: bool) -> Result<Self, McapWriteError> {
+    fn new(writer: W, has_particles: bool) -> Result<Self, McapWriteError> {
         // outlines and transforms repeat themselves from row to row
         let mut recorder = Recorder::new(writer, Some(Compression::Zstd))?;
         let pose = recorder.topic::<PoseWithCovarianceStamped>("/stickslip/pose")?;
@@ -87,14 +91,6 @@ impl<W: Write + Seek> Messages<W> {
         let mut clouds = [0; 4];
         for (cloud, name) in clouds.iter_mut().zip(CLOUDS) {
             *cloud = recorder.topic::<PointCloud>(&format!("/stickslip/points/{name}"))?;
-        }
-        let mut numbers = [0; 5];
-        for (topic, name) in
-            numbers
-                .iter_mut()
-                .zip(["friction", "friction_std", "contacts", "health", "belief"])
-        {
-            *topic = recorder.topic::<Numbers>(&format!("/stickslip/{name}"))?;
         }
         let particles = match has_particles {
             false => None,
@@ -105,13 +101,11 @@ impl<W: Write + Seek> Messages<W> {
         };
         Ok(Self {
             recorder,
-            has_tripod,
             pose,
             tf,
             markers,
             particles,
             clouds,
-            numbers,
         })
     }
 
@@ -166,60 +160,6 @@ impl<W: Write + Seek> Messages<W> {
         let all = cloud.iter().map(|pose| pose_parts(*pose)).collect();
         self.recorder
             .write(Some(poses), stamp, Some(PoseArray { header, poses: all }))
-    }
-
-    fn write_numbers(&mut self, stamp: i64, row: &EstimateRow) -> Result<(), McapWriteError> {
-        let tripod = self.has_tripod;
-        let fixels = row.contact_others.as_deref().unwrap_or_default();
-        let belief = belief_columns::numbers(row, fixels.len()).into_iter();
-        let names: Vec<_> = (1..=fixels.len())
-            .map(|k| format!(",contact_{k}"))
-            .collect();
-        let messages = [
-            Numbers::new("mu_s,mu_p,mu_f,d_tri", friction(row.friction, tripod)),
-            Numbers::new(
-                "std_mu_s,std_mu_p,std_mu_f,std_d_tri",
-                friction(row.spread.and_then(|spread| spread.friction), tripod),
-            ),
-            Numbers::new(
-                &format!("contact_pusher{}", names.concat()),
-                [&[row.contact_pusher.unwrap_or(f64::NAN)], fixels].concat(),
-            ),
-            Numbers::new(
-                "ess,resampled,visual,unsolved,failed",
-                vec![
-                    row.ess.unwrap_or(f64::NAN),
-                    row.resampled.map_or(f64::NAN, f64::from),
-                    f64::from(row.visual),
-                    row.unsolved.map_or(f64::NAN, f64::from),
-                    row.failed.map_or(f64::NAN, f64::from),
-                ],
-            ),
-            Numbers::new(
-                &belief_columns::names(fixels.len())
-                    .collect::<Vec<_>>()
-                    .join(","),
-                belief.map(|number| number.unwrap_or(f64::NAN)).collect(),
-            ),
-        ];
-        for (topic, message) in self.numbers.into_iter().zip(messages) {
-            self.recorder.write(Some(topic), stamp, Some(message))?;
-        }
-        Ok(())
-    }
-}
-
-fn friction(friction: Option<Friction>, has_tripod: bool) -> Vec<f64> {
-    match friction {
-        None => vec![f64::NAN; 4],
-        Some(Friction {
-            mu_s,
-            mu_p,
-            mu_f,
-            d_tri,
-        }) => {
-            vec![mu_s, mu_p, mu_f, if has_tripod { d_tri } else { f64::NAN }]
-        }
     }
 }
 

@@ -92,24 +92,10 @@ impl PointCloud {
     }
 }
 
-/// `std_msgs/msg/Float64MultiArray` of one dimension.
+/// `std_msgs/msg/Float64`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Numbers {
-    /// Label, size and stride of each dimension.
-    dimensions: Vec<(String, u32, u32)>,
-    data_offset: u32,
-    data: Vec<f64>,
-}
-
-impl Numbers {
-    pub(crate) fn new(label: &str, data: Vec<f64>) -> Self {
-        let size = data.len() as u32;
-        Self {
-            dimensions: vec![(label.to_owned(), size, size)],
-            data_offset: 0,
-            data,
-        }
-    }
+pub(crate) struct Float64 {
+    pub data: f64,
 }
 
 /// A line from point to point.
@@ -159,16 +145,12 @@ impl WrittenMessage for PointCloud {
     );
 }
 
-impl Message for Numbers {
-    const TYPE: &'static str = "std_msgs/msg/Float64MultiArray";
+impl Message for Float64 {
+    const TYPE: &'static str = "std_msgs/msg/Float64";
 }
 
-impl WrittenMessage for Numbers {
-    const SCHEMA: &'static str = definitions!(
-        "std_msgs/MultiArrayLayout layout\nfloat64[] data\n",
-        "std_msgs/MultiArrayLayout": "std_msgs/MultiArrayDimension[] dim\nuint32 data_offset\n",
-        "std_msgs/MultiArrayDimension": "string label\nuint32 size\nuint32 stride\n"
-    );
+impl WrittenMessage for Float64 {
+    const SCHEMA: &'static str = "float64 data\n";
 }
 
 impl WrittenMessage for PoseWithCovarianceStamped {

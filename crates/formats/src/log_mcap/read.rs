@@ -122,7 +122,7 @@ pub fn read_bag<R: Read>(
     };
     let mut warnings = damage_warnings(&recording, &names);
     warnings.extend(unread(&recording, &names, &options.topics));
-    let sensors = reader
+    let (others, sensors) = reader
         .check_topics()
         .map_err(|problem| reader.whole(problem))?;
 
@@ -130,9 +130,12 @@ pub fn read_bag<R: Read>(
     let mut frame = CommonFrame::default();
     let mut transforms = BTreeMap::new();
     let mut poses = |topic| reader.poses(topic, (&mut frame, &mut transforms), &mut warnings);
-    let ((object, covariances), (pusher, _)) = (poses(Topic::Object)?, poses(Topic::Pusher)?);
-    let touches = reader.touches(sensors, (&object, &pusher), &mut warnings)?;
-    let rows = Rows::new(&object, &pusher, &touches);
+    let (object, covariances) = poses(Topic::Object)?;
+    let fingers = once(Topic::Pusher).chain((1..=others).map(Topic::Finger));
+    let fingers = fingers.map(|finger| Ok(poses(finger)?.0));
+    let fingers: Vec<Series<Pose>> = fingers.collect::<Result<_, McapError>>()?;
+    let touches = reader.touches(sensors, (&object, &fingers), &mut warnings)?;
+    let mut rows = Rows::new(&object, &fingers, &touches);
     let time = reader
         .times(&rows)
         .map_err(|problem| reader.whole(problem))?;
@@ -143,8 +146,8 @@ pub fn read_bag<R: Read>(
         time,
         object_covariance: own_covariances(&rows, &covariances),
         object: rows.object,
-        pusher: rows.pusher,
-        other_fingers: Vec::new(),
+        other_fingers: rows.fingers.split_off(1),
+        pusher: rows.fingers.swap_remove(0),
         tactile: rows.tactile,
         force,
     };
@@ -231,11 +234,11 @@ impl<'a> Reader<'a> {
         whole(&self.files[..self.files.len().min(1)], problem)
     }
 
-    /// All needed topics are there; the number of sensors.
-    fn check_topics(&self) -> Result<usize, McapProblem> {
+    /// All needed topics are there; the numbers of other fingers and of sensors.
+    fn check_topics(&self) -> Result<(usize, usize), McapProblem> {
         self.require(Topic::Object)?;
         self.require(Topic::Pusher)?;
-        self.sensors()
+        Ok((self.numbered(Topic::Finger)?, self.sensors()?))
     }
 
     /// Refuses a bag that lacks a topic.
@@ -302,13 +305,13 @@ impl<'a> Reader<'a> {
         warnings: &mut Vec<LogWarning>,
     ) -> Result<(Series<Pose>, BTreeMap<i64, PoseCovariance>), McapError> {
         let places = self.options.topics.places(topic);
-        let mounts = &self.options.mounts;
+        let (mounts, none) = (&self.options.mounts, BTreeMap::new());
         let body = TaggedBody {
             body: topic,
-            mounts: if topic == Topic::Object {
-                &mounts.object
-            } else {
-                &mounts.pusher
+            mounts: match topic {
+                Topic::Object => &mounts.object,
+                Topic::Pusher => &mounts.pusher,
+                _ => &none,
             },
             frames: places.len(),
         };

@@ -20,8 +20,8 @@ pub(crate) struct Rows {
     pub time: Vec<i64>,
     /// Object poses.
     pub object: Vec<Option<Pose>>,
-    /// Pusher poses.
-    pub pusher: Vec<Option<Pose>>,
+    /// Poses of the pusher, then of each other finger.
+    pub fingers: Vec<Vec<Option<Pose>>>,
     /// Readings, one column per touch sensor.
     pub tactile: Vec<Vec<Option<bool>>>,
 }
@@ -30,7 +30,8 @@ pub(crate) struct Rows {
 #[derive(Clone, Copy)]
 enum Measured {
     Object(Pose),
-    Pusher(Pose),
+    /// Finger, from 0 for the pusher, and pose.
+    Finger(usize, Pose),
     /// Sensor and reading.
     Touch(usize, bool),
 }
@@ -45,16 +46,17 @@ impl Rows {
     /// out.
     pub(crate) fn new(
         object: &[Timed<Pose>],
-        pusher: &[Timed<Pose>],
+        fingers: &[Vec<Timed<Pose>>],
         touches: &[Vec<Timed<bool>>],
     ) -> Self {
         let mut rows = Self {
+            fingers: vec![Vec::new(); fingers.len()],
             tactile: vec![Vec::new(); touches.len()],
             ..Self::default()
         };
         // the row of the latest step
         let mut step = None;
-        for Timed { time, value } in measurements(object, pusher, touches) {
+        for Timed { time, value } in measurements(object, fingers, touches) {
             let of_step = matches!(value, Measured::Touch(..))
                 .then_some(step)
                 .flatten()
@@ -66,7 +68,7 @@ impl Rows {
                     // its covariance is found by its time
                     rows.time[row] = time;
                 }
-                Measured::Pusher(pose) => rows.pusher[row] = Some(pose),
+                Measured::Finger(finger, pose) => rows.fingers[finger][row] = Some(pose),
                 Measured::Touch(sensor, is_on) => {
                     let cell = &mut rows.tactile[sensor][row];
                     *cell = Some(is_on || *cell == Some(true));
@@ -86,7 +88,7 @@ impl Rows {
         let joins = last.filter(|row| {
             let is_free = match value {
                 Measured::Object(_) => self.object[*row].is_none(),
-                Measured::Pusher(_) => self.pusher[*row].is_none(),
+                Measured::Finger(finger, _) => self.fingers[finger][*row].is_none(),
                 Measured::Touch(..) => true,
             };
             is_free && seconds(self.time[*row]) == seconds(time)
@@ -94,7 +96,7 @@ impl Rows {
         joins.unwrap_or_else(|| {
             self.time.push(time);
             self.object.push(None);
-            self.pusher.push(None);
+            self.fingers.iter_mut().for_each(|cells| cells.push(None));
             self.tactile.iter_mut().for_each(|cells| cells.push(None));
             self.time.len() - 1
         })
@@ -165,13 +167,19 @@ pub(crate) fn seconds(time: i64) -> f64 {
 /// All measurements by time; of one time the poses come first.
 fn measurements(
     object: &[Timed<Pose>],
-    pusher: &[Timed<Pose>],
+    fingers: &[Vec<Timed<Pose>>],
     touches: &[Vec<Timed<bool>>],
 ) -> Vec<Timed<Measured>> {
-    let (from, to) = span(object, pusher);
-    let mut all = Vec::with_capacity(object.len() + pusher.len());
+    let (from, to) = span(object, fingers);
+    let mut all = Vec::with_capacity(2 * object.len());
     all.extend(object.iter().map(|pose| pose.map(Measured::Object)));
-    all.extend(pusher.iter().map(|pose| pose.map(Measured::Pusher)));
+    for (finger, poses) in fingers.iter().enumerate() {
+        all.extend(
+            poses
+                .iter()
+                .map(|pose| pose.map(|pose| Measured::Finger(finger, pose))),
+        );
+    }
     for (sensor, readings) in touches.iter().enumerate() {
         let near = readings
             .iter()
@@ -183,9 +191,10 @@ fn measurements(
 }
 
 /// Times of the first and of the last pose (ns); an empty span without any.
-pub(crate) fn span(object: &[Timed<Pose>], pusher: &[Timed<Pose>]) -> (i64, i64) {
+pub(crate) fn span(object: &[Timed<Pose>], fingers: &[Vec<Timed<Pose>>]) -> (i64, i64) {
     let ends = |series: &[Timed<Pose>]| Some((series.first()?.time, series.last()?.time));
-    let all = [ends(object), ends(pusher)].into_iter().flatten();
+    let fingers = fingers.iter().map(|poses| ends(poses));
+    let all = std::iter::once(ends(object)).chain(fingers).flatten();
     all.fold((i64::MAX, i64::MIN), |all, own| {
         (all.0.min(own.0), all.1.max(own.1))
     })

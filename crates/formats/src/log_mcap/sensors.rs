@@ -77,34 +77,48 @@ impl CameraRecording {
 impl Reader<'_> {
     /// All topics of sensors that are mapped are there; the number of touch sensors.
     pub(crate) fn sensors(&self) -> Result<usize, McapProblem> {
+        if self.options.topics.is_mapped(Topic::Wrench) {
+            self.require(Topic::Wrench)?;
+        }
+        self.numbered(Topic::Fixel)
+    }
+
+    /// Number of the numbered topics of one `kind`, [`Topic::Fixel`] or [`Topic::Finger`]: all that
+    /// are mapped are there, and none is missing between.
+    pub(crate) fn numbered(&self, kind: fn(usize) -> Topic) -> Result<usize, McapProblem> {
         let topics = &self.options.topics;
         let recorded = self.recording.topics.keys();
-        let fixels: BTreeSet<usize> = recorded
-            .filter_map(|name| fixel(topics.carries(name)?))
-            .chain(topics.mapped_fixels())
+        let known: BTreeSet<Topic> = recorded
+            .filter_map(|name| topics.carries(name))
+            .chain(topics.mapped())
             .collect();
-        let mapped = fixels
-            .iter()
-            .map(|k| Topic::Fixel(*k))
-            .chain([Topic::Wrench])
-            .filter(|topic| topics.is_mapped(*topic));
-        for topic in mapped {
-            self.require(topic)?;
+        let found = (1..=known.len()).take_while(|k| known.contains(&kind(*k)));
+        let count = found.count();
+        let of_kind = |topic: &&Topic| match topic {
+            Topic::Fixel(k) | Topic::Finger(k) => kind(*k) == **topic,
+            _ => false,
+        };
+        for topic in known.iter().filter(of_kind) {
+            if topics.is_mapped(*topic) {
+                self.require(*topic)?;
+            }
         }
-        match (1..).zip(&fixels).find(|(expected, k)| expected != *k) {
-            Some((missing, _)) => Err(McapProblem::SensorNumber { missing }),
-            None => Ok(fixels.len()),
+        match known.iter().filter(of_kind).count() == count {
+            true => Ok(count),
+            false => Err(McapProblem::Gap {
+                missing: kind(count + 1),
+            }),
         }
     }
 
-    /// The readings of `sensors` touch sensors, next to the poses of both bodies.
+    /// The readings of `sensors` touch sensors, next to the poses of all bodies.
     pub(crate) fn touches(
         &self,
         sensors: usize,
-        (object, pusher): (&[Timed<Pose>], &[Timed<Pose>]),
+        (object, fingers): (&[Timed<Pose>], &[Series<Pose>]),
         warnings: &mut Vec<LogWarning>,
     ) -> Result<Vec<Series<bool>>, McapError> {
-        let poses = span(object, pusher);
+        let poses = span(object, fingers);
         let mut all = Vec::with_capacity(sensors);
         for topic in (1..=sensors).map(Topic::Fixel) {
             let touches = self.topic_touches(topic, warnings)?;
@@ -174,13 +188,5 @@ impl Reader<'_> {
     /// Name of the bag in warnings.
     fn bag(&self) -> String {
         self.files.first().cloned().unwrap_or_default()
-    }
-}
-
-fn fixel(topic: Topic) -> Option<usize> {
-    if let Topic::Fixel(k) = topic {
-        Some(k)
-    } else {
-        None
     }
 }

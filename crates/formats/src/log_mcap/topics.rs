@@ -14,9 +14,12 @@ pub enum Topic {
     Object,
     /// Poses of the pusher.
     Pusher,
+    /// Poses of the k-th other finger of a hand, counted from 1.
+    Finger(usize),
     /// Forces of the pusher on the object.
     Wrench,
-    /// Readings of a tactile sensor, that on the k-th fixel, counted from 1.
+    /// Readings of the k-th tactile sensor, counted from 1: those of fixels, then those of a hand's
+    /// fingers.
     Fixel(usize),
 }
 
@@ -30,8 +33,8 @@ pub struct TopicMapping {
     pub place: Option<Place>,
 }
 
-/// Places of all topics: `/object/pose`, `/pusher/pose`, `/pusher/wrench`, `/fixel_<k>/contact`, or
-/// those that they are mapped to. A body may have several frames.
+/// Places of all topics: `/object/pose`, `/pusher/pose`, `/finger_<k>/pose`, `/pusher/wrench`,
+/// `/fixel_<k>/contact`, or those that they are mapped to. A body may have several frames.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Topics(BTreeMap<Topic, Vec<Place>>);
 
@@ -44,7 +47,7 @@ pub enum TopicError {
     NoTopic(String),
     /// The key is none.
     #[error(
-        "`{found}` is none of the keys object, pusher, wrench, fixel_1, fixel_2, ...; the nearest is {nearest}"
+        "`{found}` is none of the keys object, pusher, finger_1, ..., wrench, fixel_1, fixel_2, ...; the nearest is {nearest}"
     )]
     UnknownKey {
         /// The key.
@@ -57,7 +60,7 @@ pub enum TopicError {
     NoFrames(String),
     /// Frames where none can be.
     #[error(
-        "{0} has no frames; only object and pusher are read from transforms. Give a topic without `:`"
+        "{0} has no frames; only object, pusher and fingers are read from transforms. Give a topic without `:`"
     )]
     Frameless(Topic),
     /// No name for a topic that must be there.
@@ -124,6 +127,7 @@ impl Topic {
         match self {
             Self::Object => "/object/pose".to_owned(),
             Self::Pusher => "/pusher/pose".to_owned(),
+            Self::Finger(k) => format!("/finger_{k}/pose"),
             Self::Wrench => "/pusher/wrench".to_owned(),
             Self::Fixel(k) => format!("/fixel_{k}/contact"),
         }
@@ -135,6 +139,7 @@ impl fmt::Display for Topic {
         match self {
             Self::Object => f.write_str("object"),
             Self::Pusher => f.write_str("pusher"),
+            Self::Finger(k) => write!(f, "finger_{k}"),
             Self::Wrench => f.write_str("wrench"),
             Self::Fixel(k) => write!(f, "fixel_{k}"),
         }
@@ -149,24 +154,28 @@ impl FromStr for Topic {
             "object" => Ok(Self::Object),
             "pusher" => Ok(Self::Pusher),
             "wrench" => Ok(Self::Wrench),
-            _ => fixel_number(key, "fixel_", "")
-                .map(Self::Fixel)
-                .ok_or_else(|| unknown(key)),
+            _ => numbered(key, ["fixel_", ""], ["finger_", ""]).ok_or_else(|| unknown(key)),
         }
     }
 }
 
 fn unknown(key: &str) -> TopicError {
-    let closest =
-        nearest(key, ["object", "pusher", "wrench", "fixel_1"]).map_or("object", |(name, _)| name);
+    let closest = nearest(key, ["object", "pusher", "wrench", "fixel_1", "finger_1"])
+        .map_or("object", |(name, _)| name);
     TopicError::UnknownKey {
         found: key.to_owned(),
         nearest: closest.to_owned(),
     }
 }
 
+/// The numbered topic whose number is between these texts, of a fixel or of a finger.
+fn numbered(text: &str, fixel: [&str; 2], finger: [&str; 2]) -> Option<Topic> {
+    let fixel = number_between(text, fixel).map(Topic::Fixel);
+    fixel.or_else(|| number_between(text, finger).map(Topic::Finger))
+}
+
 /// The number between `before` and `after`, from 1 up and as it is written out.
-fn fixel_number(text: &str, before: &str, after: &str) -> Option<usize> {
+fn number_between(text: &str, [before, after]: [&str; 2]) -> Option<usize> {
     let digits = text.strip_prefix(before)?.strip_suffix(after)?;
     digits
         .parse()
@@ -189,7 +198,7 @@ impl FromStr for TopicMapping {
             };
         }
         let place: Place = name.parse()?;
-        if place.frames.is_some() && !matches!(topic, Topic::Object | Topic::Pusher) {
+        if place.frames.is_some() && matches!(topic, Topic::Wrench | Topic::Fixel(_)) {
             return Err(TopicError::Frameless(topic));
         }
         Ok(Self {
@@ -290,24 +299,18 @@ impl Topics {
         if let Some(topic) = mapped.filter_map(at).next() {
             return topic;
         }
-        let fixel = fixel_number(name, "/fixel_", "/contact").map(Topic::Fixel);
+        let numbered = numbered(name, ["/fixel_", "/contact"], ["/finger_", "/pose"]);
         let known = [Topic::Object, Topic::Pusher, Topic::Wrench]
             .into_iter()
-            .chain(fixel);
+            .chain(numbered);
         known
             .into_iter()
             .find(|topic| topic.default_name() == name && !self.0.contains_key(topic))
     }
 
-    /// Numbers of the fixels that are mapped.
-    pub(crate) fn mapped_fixels(&self) -> impl Iterator<Item = usize> {
-        self.0.keys().filter_map(|topic| {
-            if let Topic::Fixel(k) = topic {
-                Some(*k)
-            } else {
-                None
-            }
-        })
+    /// Topics that are mapped, or left out.
+    pub(crate) fn mapped(&self) -> impl Iterator<Item = Topic> {
+        self.0.keys().copied()
     }
 }
 

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::io::{Seek, Write};
+use std::iter::once;
 
 use mcap::records::MessageHeader;
 use mcap::{Compression, WriteOptions, Writer};
@@ -49,11 +50,6 @@ pub enum McapWriteError {
         "{0} is mapped to frames of transforms, and poses are written as PoseStamped. Map it to a topic"
     )]
     Frames(Topic),
-    /// A hand of several fingers.
-    #[error(
-        "a recording has the pose of one pusher, and there are {0} [[finger]] tables. Write CSV files"
-    )]
-    Fingers(usize),
     /// The writer failed.
     #[error("the recording cannot be written: {0}")]
     Output(#[source] Box<dyn std::error::Error + Send + Sync>),
@@ -106,7 +102,8 @@ pub fn write_log_mcap(
 pub(crate) struct LogMessages<W: Write + Seek> {
     recorder: Recorder<W>,
     object: Option<u16>,
-    pusher: Option<u16>,
+    /// Of the pusher, then of each other finger.
+    fingers: Vec<Option<u16>>,
     touches: Vec<Option<u16>>,
     wrench: Option<u16>,
 }
@@ -115,16 +112,15 @@ impl<W: Write + Seek> LogMessages<W> {
     /// Begins a recording with a channel for each column that `log` has.
     pub(crate) fn new(writer: W, log: &Log, topics: &Topics) -> Result<Self, McapWriteError> {
         // plain: a log whose end is lost can then be read up to there by any tool
-        match log.other_fingers.len() {
-            0 => {}
-            fingers => return Err(McapWriteError::Fingers(fingers)),
-        }
         let mut recorder = Recorder::new(writer, None)?;
         let object = match log.object_covariance.is_empty() {
             true => recorder.channel::<PoseStamped>(topics, Topic::Object)?,
             false => recorder.channel::<PoseWithCovarianceStamped>(topics, Topic::Object)?,
         };
-        let pusher = recorder.channel::<PoseStamped>(topics, Topic::Pusher)?;
+        let fingers = once(Topic::Pusher)
+            .chain((1..=log.other_fingers.len()).map(Topic::Finger))
+            .map(|finger| recorder.channel::<PoseStamped>(topics, finger))
+            .collect::<Result<Vec<_>, _>>()?;
         let touches = (1..=log.tactile.len())
             .map(|k| recorder.channel::<Bool>(topics, Topic::Fixel(k)))
             .collect::<Result<Vec<_>, _>>()?;
@@ -136,7 +132,7 @@ impl<W: Write + Seek> LogMessages<W> {
         Ok(Self {
             recorder,
             object,
-            pusher,
+            fingers,
             touches,
             wrench,
         })
@@ -162,7 +158,9 @@ impl<W: Write + Seek> LogMessages<W> {
                 recorder.write(self.object, stamp, noisy)?;
             }
         }
-        recorder.write(self.pusher, stamp, log.pusher[row].map(pose))?;
+        for (channel, poses) in self.fingers.iter().zip(log.fingers()) {
+            recorder.write(*channel, stamp, poses[row].map(pose))?;
+        }
         for (channel, column) in self.touches.iter().zip(&log.tactile) {
             recorder.write(*channel, stamp, column[row].map(|data| Bool { data }))?;
         }

@@ -203,6 +203,9 @@ const TABLES: [(&str, &[Key]); 16] = [
         number("tripod_angle", Radian, NotNegative, Or("1.0471975511965979"),
             "the standard deviation of the rotation of the feet")
             .note("pi / 3 is any angle; 0 where support.tripod_angle or support.feet is given."),
+        number("foot_stretch", PLAIN, NotNegative, Or("0.3"),
+            "the standard deviation of ln of a stretch of the feet's triangle")
+            .note("0 where support.feet is given."),
         number("force_std", PLAIN, NotNegative, Or("0.25"),
             FORCE),
         number("pusher_offset", Metre, NotNegative, Or("3.0e-4"),

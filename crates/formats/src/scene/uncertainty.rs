@@ -13,6 +13,7 @@ pub(super) fn with_support(support: &Table<'_>) -> Uncertainty {
     let mut unknown = Uncertainty::default();
     if given("feet") {
         unknown = unknown.with_known_feet();
+        unknown.friction.d_tri = 0.0;
     }
     if given("tripod_angle") {
         unknown.tripod_angle = 0.0;
@@ -41,6 +42,7 @@ pub(super) fn uncertainty(
         },
         centre_of_friction: number("centre_of_friction", default.centre_of_friction)?,
         tripod_angle: number("tripod_angle", default.tripod_angle)?,
+        foot_stretch: number("foot_stretch", default.foot_stretch)?,
         force_std: number("force_std", default.force_std)?,
         pusher_offset: number("pusher_offset", default.pusher_offset)?,
         pusher_lag: number("pusher_lag", default.pusher_lag)?,

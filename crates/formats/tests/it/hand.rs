@@ -1,10 +1,12 @@
 //! The fingers of a hand in scenes, logs and rows.
 
+use std::io::Cursor;
+
 use stickslip::Log;
 use stickslip_dynamics::Pose;
 use stickslip_formats::{
-    BodiesError, NamedColumns, check_bodies, log_columns, log_of_columns, read_log, read_row_json,
-    read_scene, write_log,
+    BodiesError, McapError, NamedColumns, Topics, check_bodies, log_columns, log_of_columns,
+    read_log, read_log_mcap, read_row_json, read_scene, write_log, write_log_mcap,
 };
 
 const HEADER: &str = "time,object_x,object_y,object_theta,pusher_x,pusher_y,pusher_theta";
@@ -21,7 +23,10 @@ fn refused(text: &str, place: &str, words: &[&str]) {
     let message = read_log(text.as_bytes(), "log.csv")
         .expect_err("must be refused")
         .to_string();
-    assert!(message.starts_with(&format!("log.csv:{place}")), "{message}");
+    assert!(
+        message.starts_with(&format!("log.csv:{place}")),
+        "{message}"
+    );
     assert!(words.iter().all(|word| message.contains(word)), "{message}");
 }
 
@@ -46,7 +51,7 @@ fn fingers_of_a_hand_have_columns_of_their_own() {
         .iter()
         .map(|(name, column)| (name.clone(), &column[..]));
     let named = NamedColumns::new(named.collect()).expect("columns");
-    assert_eq!(log_of_columns(&named, "log"), Ok((log, vec![])));
+    assert_eq!(log_of_columns(&named, "log"), Ok((log.clone(), vec![])));
 
     let line = r#"{"time": 0.5, "finger_2_x": -1, "finger_2_y": 0, "finger_2_theta": 0.25}"#;
     let row = read_row_json(line).expect("a row");
@@ -102,4 +107,43 @@ fn a_log_has_the_fingers_of_its_scene() {
     );
     let message = error.expect_err("too many fingers").to_string();
     assert!(message.contains("at most 3 other fingers"), "{message}");
+}
+
+#[test]
+fn a_bag_has_a_topic_for_each_finger() {
+    let at = |x: f64| Some(Pose::new(x, 0.25, 0.5));
+    let log = Log {
+        time: vec![0.0, 0.5, 1.0],
+        object: vec![at(0.0), None, at(1.0)],
+        pusher: vec![at(2.0), at(3.0), at(4.0)],
+        other_fingers: vec![vec![at(5.0), at(6.0), None], vec![None, at(7.0), at(8.0)]],
+        tactile: vec![vec![Some(true), Some(false), Some(true)]],
+        ..Log::default()
+    };
+    let write = |topics: &Topics| {
+        let mut bag = Cursor::new(Vec::new());
+        write_log_mcap(&mut bag, &log, topics).expect("memory takes everything");
+        bag.into_inner()
+    };
+    let read = |bag: Vec<u8>, topics: &Topics| read_log_mcap(&bag[..], "hand.mcap", topics);
+    let plain = Topics::default();
+    let mapped = ["finger_2=/right/pose".parse().expect("a mapping")];
+    let mapped = Topics::new(mapped).expect("topics");
+    for topics in [&plain, &mapped] {
+        let (back, warnings) = read(write(topics), topics).expect("a bag");
+        assert!(warnings.is_empty(), "{warnings:?}");
+        assert_eq!(back, log);
+    }
+    let message = |error: Result<_, McapError>| error.expect_err("refused").to_string();
+    let missing = message(read(write(&plain), &mapped));
+    assert!(
+        missing.contains("the topic `/right/pose` (finger_2) is not there"),
+        "{missing}"
+    );
+    let later = Topics::new(["finger_4=/pusher/pose2".parse().expect("a mapping")]);
+    let gap = message(read(write(&plain), &later.expect("topics")));
+    assert!(
+        gap.contains("`/pusher/pose2` (finger_4) is not there"),
+        "{gap}"
+    );
 }

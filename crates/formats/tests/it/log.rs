@@ -4,8 +4,8 @@
 use stickslip::Log;
 use stickslip_dynamics::Pose;
 use stickslip_formats::{
-    BodiesError, LogWarning, NamedColumns, check_bodies, log_of_columns, read_log,
-    read_scene, write_log,
+    BodiesError, LogWarning, NamedColumns, check_bodies, log_of_columns, read_log, read_scene,
+    write_log,
 };
 
 const HEADER: &str = "time,object_x,object_y,object_theta,pusher_x,pusher_y,pusher_theta";

@@ -107,7 +107,7 @@ fn topics_are_refused_with_place_value_rule_and_next_step() {
     refused(
         &with(touch(2, 0, true)),
         &plain,
-        "sensors are numbered fixel_1, fixel_2, ... without gaps, and fixel_1 is not there",
+        "fixel_1 is not there, and a later number is",
     );
     let words = "the topic `/pusher/pose` (pusher) is not there, the nearest is `/pusher_pose`. Say which topic it is with pusher=TOPIC; the recording has /object/pose, /pusher_pose";
     refused(

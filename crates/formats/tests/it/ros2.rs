@@ -8,6 +8,7 @@ use std::f64::consts::TAU;
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 
+use crate::data_folder::data_folder;
 use crate::ros2_peer::{folder, peer};
 use stickslip::{Log, PoseCovariance};
 use stickslip_dynamics::Pose;
@@ -33,11 +34,7 @@ const TOLD: PoseCovariance = PoseCovariance {
 };
 
 fn recorded(name: &str) -> (PathBuf, Log) {
-    let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
-    let path = std::env::var_os("STICKSLIP_DATA")
-        .map_or_else(beside, PathBuf::from)
-        .join(name)
-        .join("log.csv");
+    let path = data_folder().join(name).join("log.csv");
     let (log, _) = read_log(
         File::open(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display())),
         "log.csv",

@@ -5,8 +5,8 @@ use resvg::tiny_skia::Pixmap;
 use resvg::usvg::{Options, Tree};
 use stickslip_dynamics::Pose;
 use stickslip_report::{
-    Body, Colour, ContactEstimate, ContactLane, ContactTimeline, Curve, Drawing, Level, Mark,
-    Overlay, Panel, ParticleCloud, Scale, TimeFigure, png_of,
+    Bars, Body, Colour, Curve, Drawing, Level, Mark, Overlay, Panel, ParticleCloud, Scale,
+    TimeFigure, png_of,
 };
 
 /// The size of an SVG that must be whole.
@@ -68,6 +68,13 @@ fn figure(points: Vec<[f64; 2]>, scale: Scale) -> TimeFigure {
             name: "never".to_owned(),
         },
     ];
+    let panel = Panel {
+        bars: vec![Bars {
+            times: vec![[0.0, f64::NAN], [0.2, 0.4]],
+            ..Bars::default()
+        }],
+        ..panel
+    };
     TimeFigure {
         dark: vec![[0.3, f64::INFINITY]],
         marks,
@@ -89,12 +96,13 @@ fn time_figures_are_drawn_whatever_their_numbers_are() {
     for points in [vec![], vec![[0.5, 0.0]], vec![[0.0, 1.0], [1.0, 1.0]], odd] {
         for scale in [Scale::Linear, log] {
             let whole = figure(points.clone(), scale);
-            size(&whole.to_svg());
+            size(&whole.drawing().to_svg());
             size(
                 &TimeFigure {
                     span: [1.0, 1.0],
                     ..whole.clone()
                 }
+                .drawing()
                 .to_svg(),
             );
             size(
@@ -103,6 +111,7 @@ fn time_figures_are_drawn_whatever_their_numbers_are() {
                     panels: Vec::new(),
                     ..whole
                 }
+                .drawing()
                 .to_svg(),
             );
         }
@@ -111,42 +120,24 @@ fn time_figures_are_drawn_whatever_their_numbers_are() {
 
 #[test]
 fn other_figures_are_drawn_whatever_their_numbers_are() {
-    size(&ContactTimeline::default().to_svg());
-    let estimates = vec![ContactEstimate {
-        name: "p".to_owned(),
-        colour: Colour::SKY,
-        points: vec![[0.0, f64::NAN], [1.0, 2.0]],
-    }];
-    let bodies = vec![ContactLane {
-        name: "pusher".to_owned(),
-        truth: Some(vec![[0.0, f64::NAN]]),
-        sensed: None,
-        estimates,
-    }];
-    size(
-        &ContactTimeline {
-            span: [0.0, 1.0],
-            bodies,
-            ..ContactTimeline::default()
-        }
-        .to_svg(),
-    );
-    size(&ParticleCloud::default().to_svg());
+    size(&ParticleCloud::default().drawing().to_svg());
     let lost = Pose::new(f64::NAN, 0.0, 0.0);
     size(
         &ParticleCloud {
             particles: vec![lost, Pose::default()],
             ..ParticleCloud::default()
         }
+        .drawing()
         .to_svg(),
     );
-    size(&Overlay::default().to_svg());
+    size(&Overlay::default().drawing().to_svg());
     let bodies = vec![Body::new("lost", &disc(0.01), &lost, Colour::SKY)];
     size(
         &Overlay {
             bodies,
             ..Overlay::default()
         }
+        .drawing()
         .to_svg(),
     );
     assert_eq!(size(&Drawing::grid(&[], 3).to_svg()).len(), 2);
@@ -206,7 +197,7 @@ fn a_curve_lies_where_its_values_are() {
         panel_size: [394.0, 224.0],
         ..TimeFigure::default()
     };
-    let shown = pixels(&figure.to_svg());
+    let shown = pixels(&figure.drawing().to_svg());
     // the panel goes from x = 76 to 376; the legend of the shade and the title's margin stand
     // above, 28 px
     let [left, right] = [76.0, 376.0];
@@ -262,7 +253,7 @@ fn an_overlay_lies_where_its_body_is() {
         width: 500.0,
         ..Overlay::default()
     };
-    let shown = pixels(&overlay.to_svg());
+    let shown = pixels(&overlay.drawing().to_svg());
     let at = |x: f64, y: f64| [12.0 + 4760.0 * x, 12.0 + 4760.0 * (0.1 - y)];
     for side in [
         at(0.025, 0.06),
@@ -280,7 +271,9 @@ fn an_overlay_lies_where_its_body_is() {
 
 #[test]
 fn png_has_two_pixels_per_unit_text_and_refuses_what_is_no_svg() {
-    let svg = figure(vec![[0.0, 1.0], [1.0, 2.0]], Scale::Linear).to_svg();
+    let svg = figure(vec![[0.0, 1.0], [1.0, 2.0]], Scale::Linear)
+        .drawing()
+        .to_svg();
     let ([width, height], shown) = (size(&svg), pixels(&svg));
     assert_eq!(
         [shown.width(), shown.height()],

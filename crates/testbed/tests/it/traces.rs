@@ -230,8 +230,8 @@ fn inertia_far_too_small_is_refused_and_not_simulated_for_days() {
 }
 
 #[test]
-#[cfg_attr(not(stickslip_data), ignore = "no recorded data: set STICKSLIP_DATA")]
-fn model_follows_the_reference_at_the_frame_s_step() {
+#[ignore = "needs recorded experiments"]
+fn model_follows_the_recorded_reference_at_the_frame_s_step() {
     let (scene, start) = (
         bench_scene(),
         Start {

@@ -1,9 +1,9 @@
-//! The shapes of all recorded scenes, where the data folder is present (`STICKSLIP_DATA`, else
-//! `../shared/data` next to the workspace).
+//! The shapes of all recorded scenes.
 
 use std::path::{Path, PathBuf};
 
 use stickslip_dynamics::{Part, Pose, Shape};
+use stickslip_testkit::data_root;
 
 use super::shapes::{Random, contacts, disc, polygon, shape, smallest};
 
@@ -69,12 +69,10 @@ fn parts(list: &str) -> Vec<Part> {
         .collect()
 }
 
-/// All different shapes of the data folder; empty where it is absent.
+/// All different shapes of the data folder.
 fn recorded() -> Vec<Vec<Part>> {
-    let default = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
-    let folder = std::env::var_os("STICKSLIP_DATA").map_or(default, PathBuf::from);
     let mut files = Vec::new();
-    scene_files(&folder, &mut files);
+    scene_files(&data_root().expect("recorded data"), &mut files);
     let mut found: Vec<Vec<Part>> = Vec::new();
     for file in files {
         let text = std::fs::read_to_string(file).expect("a readable scene");
@@ -84,10 +82,12 @@ fn recorded() -> Vec<Vec<Part>> {
             }
         }
     }
+    assert!(!found.is_empty());
     found
 }
 
 #[test]
+#[ignore = "needs recorded experiments"]
 fn recorded_shapes_are_as_far_as_their_nearest_part() {
     let mut random = Random(1);
     for list in recorded() {
@@ -119,6 +119,7 @@ fn recorded_shapes_are_as_far_as_their_nearest_part() {
 }
 
 #[test]
+#[ignore = "needs recorded experiments"]
 fn a_point_round_a_recorded_shape_touches_no_seam() {
     let mut random = Random(2);
     for list in recorded() {

@@ -2,7 +2,7 @@
 //! which keeps only the parameters that took part.
 
 use stickslip_dynamics::{
-    Body, Dynamics, Friction, Lanes, Level, Mask, Outcome, Particles, Pose, StepWork, Twist,
+    Body, Dynamics, Friction, Lanes, Level, Mask, Outcome, Particles, StepWork, Support, Twist,
     on_widest,
 };
 use stickslip_filter::{BLOCK, BlockMut, Draw};
@@ -41,7 +41,7 @@ pub(crate) struct Transition<'o> {
 }
 
 /// Working memory for the particles of one block.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Propagation {
     pub(crate) work: StepWork<LANES>,
     pub(crate) particles: [Particles<LANES>; CHUNKS],
@@ -52,8 +52,8 @@ pub struct Propagation {
     /// Turn of the pusher; empty if it is known (robust model).
     pub(crate) pusher_turn: Vec<Column>,
     pub(crate) fixel_offsets: Vec<[Column; 2]>,
-    /// Offsets of each particle's feet from the scene's; empty if they are known (robust model).
-    pub(crate) foot_offsets: Vec<Pose<Column>>,
+    /// Image of the scene's feet of each particle; empty if they are known (robust model).
+    pub(crate) supports: Vec<Support<Column>>,
     /// Square of the pusher's lag before the step (m²) (robust model).
     pub(crate) lag_before: [Column; CHUNKS],
     /// Impulse of the table's friction over the step (N s), with a force sensor (robust model).
@@ -110,7 +110,7 @@ impl Default for Propagation {
             pusher_offsets: Vec::new(),
             pusher_turn: Vec::new(),
             fixel_offsets: Vec::new(),
-            foot_offsets: Vec::new(),
+            supports: Vec::new(),
             lag_before: [Column::ZERO; CHUNKS],
             support: [[Column::ZERO; 2]; CHUNKS],
             carried: [Twist::default(); CHUNKS],

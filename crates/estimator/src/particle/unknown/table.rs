@@ -40,7 +40,8 @@ pub(crate) enum Name {
     Latency,
     /// ln of the factor between the measured force and the table's friction (`wrench.scale_std`).
     ForceScale,
-    /// Displacement and turn of the feet: x, y, angle (`centre_of_friction`, `tripod_angle`).
+    /// Image of the feet: displacement x, y (`centre_of_friction`), turn (`tripod_angle`), and two
+    /// numbers of ln of a stretch (`foot_stretch`).
     Feet,
     /// Offset of a fixel from its position, or of another finger from its logged poses: x, y
     /// (`fixel_position`, `pusher_offset`).
@@ -66,7 +67,7 @@ pub(crate) const UNKNOWNS: [Unknown; 7] = [
     unknown(Name::Roughness, 1, Event::PusherNear, false),
     unknown(Name::Latency, 1, Event::PusherNear, true),
     unknown(Name::ForceScale, 1, Event::Motion, false),
-    unknown(Name::Feet, 3, Event::Motion, true),
+    unknown(Name::Feet, 5, Event::Motion, true),
     unknown(Name::OtherOffset, 2, Event::OtherNear, true),
 ];
 

@@ -1,7 +1,7 @@
 //! Where pusher, fixels and feet of each particle are (robust model): the units of its unknowns,
 //! docs/model.md (35) and (36).
 
-use stickslip_dynamics::{Lanes, Offsets, Pose, StepInput};
+use stickslip_dynamics::{Lanes, Offsets, StepInput, Support};
 use stickslip_filter::BlockMut;
 
 use crate::particle::set::chunk::{Column, LANES, load_chunk};
@@ -83,43 +83,48 @@ impl Propagation {
             pusher: &self.pusher_offsets,
             pusher_turn: &self.pusher_turn,
             fixels: &self.fixel_offsets,
-            foot_offsets: &self.foot_offsets,
+            supports: &self.supports,
         };
         let particles = &mut self.particles[..chunks];
         let dynamics = &transition.dynamics;
         dynamics.step_block_offset(input, offsets, particles, &mut self.work);
     }
 
-    /// Loads the displacement and the turn of the feet relative to the scene's, for all substeps.
+    /// Loads the image of the scene's feet, for all substeps: (35).
     #[inline(always)]
     pub(crate) fn load_support(
         &mut self,
         Transition { setup, columns, .. }: &Transition<'_>,
         block: &BlockMut<'_>,
     ) {
-        self.foot_offsets.clear();
+        self.supports.clear();
         if !setup.support_is_uncertain() {
             return;
         }
-        let centre = setup.uncertainty.centre_of_friction * setup.scene.object.gyration_radius();
-        let angle = setup.uncertainty.tripod_angle;
+        let unsure = &setup.uncertainty;
+        let centre = unsure.centre_of_friction * setup.scene.object.gyration_radius();
         for chunk in 0..block.len().div_ceil(LANES) {
-            let mut offset = Pose::default();
-            load_columns(
-                block,
-                columns.unknown(Name::Feet, 0),
-                chunk,
-                offset.fields_mut(),
+            let mut numbers = [Lanes::ZERO; 5];
+            let first = columns.unknown(Name::Feet, 0);
+            load_columns(block, first, chunk, numbers.each_mut());
+            let [x, y, turn, along, across] = numbers;
+            let stretch = [along, across].map(|x| x * unsure.foot_stretch);
+            let mut support = Support::new(
+                [x * centre, y * centre],
+                turn * unsure.tripod_angle,
+                stretch,
             );
-            let Pose { x, y, theta } = offset;
-            self.foot_offsets.push(Pose {
-                x: x * centre,
-                y: y * centre,
-                theta: theta * angle,
-            });
+            if !setup.has_tripod() {
+                let d_tri = load_chunk(block.column(Columns::FRICTION + D_TRI), chunk, 0.0);
+                support = support.scaled(d_tri * (1.0 / setup.scene.nominal.d_tri));
+            }
+            self.supports.push(support);
         }
     }
 }
+
+/// Index of d_tri. Known feet, which have no radius, scale with it.
+const D_TRI: usize = 3;
 
 /// Returns the numbers of ln of the rig's scale of one chunk.
 #[inline(always)]

@@ -93,10 +93,8 @@ def show_estimate(program, topic, log_time, message):
         assert len(points) == message.width and message.height == 1 and message.row_step == len(message.data)
         assert [field.offset for field in message.fields] == [0, 4, 8] and message.point_step == 12
         print(program, topic, log_time, message.header.frame_id, "-", *(repr(float(n)) for point in points for n in point))
-    elif hasattr(message, "layout"):
-        (dimension,) = message.layout.dim
-        assert dimension.size == dimension.stride == len(message.data)
-        print(program, topic, log_time, "world", dimension.label, *(repr(float(n)) for n in message.data))
+    elif isinstance(getattr(message, "data", None), float):
+        print(program, topic, log_time, "world", "-", repr(message.data))
     elif hasattr(message, "pose") and hasattr(message.pose, "covariance"):
         p, q, c = message.pose.pose.position, message.pose.pose.orientation, message.pose.covariance
         print(program, topic, log_time, message.header.frame_id, "-", *(repr(float(n)) for n in [p.x, p.y, q.z, q.w, *c]))

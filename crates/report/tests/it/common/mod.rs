@@ -76,6 +76,7 @@ pub fn log(rows: usize) -> Log {
         object: (0..rows).map(|row| Some(truth(row, rows))).collect(),
         object_covariance: Vec::new(),
         pusher: (0..rows).map(pusher).collect(),
+        other_fingers: Vec::new(),
         tactile: vec![(0..rows).map(|row| Some(row * 10 >= 7 * rows)).collect()],
         force: Vec::new(),
     }
