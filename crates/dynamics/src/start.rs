@@ -11,7 +11,9 @@ pub struct Start {
     pub pusher: Pose,
     /// Direction of the pusher's motion, world frame (rad).
     pub direction: f64,
-    /// Commanded speed of the pusher.
+    /// A hand's other fingers: the pose, where each keeps its angle, and its direction (rad).
+    pub other_fingers: Vec<(Pose, f64)>,
+    /// Commanded speed of the drive, with which every finger moves along its direction.
     pub speed: SpeedProfile,
     /// Duration of the experiment (s).
     pub duration: f64,
@@ -25,20 +27,26 @@ pub struct SpeedProfile {
 }
 
 impl Start {
-    /// The unit vector of the pusher's motion, world frame.
-    pub fn direction_vector(&self) -> [f64; 2] {
-        let (sin, cos) = libm::sincos(self.direction);
-        [cos, sin]
+    /// Unit vector of the motion of each finger, world frame, the pusher's first.
+    pub fn directions(&self) -> impl Iterator<Item = [f64; 2]> {
+        self.fingers().map(|(_, direction)| {
+            let (sin, cos) = libm::sincos(direction);
+            [cos, sin]
+        })
     }
 
-    /// The commanded pose of the pusher at `time` (s).
-    pub fn commanded(&self, time: f64) -> Pose {
-        let ([x, y], way) = (self.direction_vector(), self.speed.travel(time));
-        Pose::new(
-            self.pusher.x + way * x,
-            self.pusher.y + way * y,
-            self.pusher.theta,
-        )
+    /// Poses of all fingers, the pusher's first, when the drive has travelled `way` (m).
+    pub fn fingers_at(&self, way: f64) -> impl Iterator<Item = Pose> {
+        let places = self.fingers().zip(self.directions());
+        places.map(move |((Pose { x, y, theta }, _), [along_x, along_y])| {
+            Pose::new(x + way * along_x, y + way * along_y, theta)
+        })
+    }
+
+    /// Pose and direction of each finger, the pusher's first.
+    fn fingers(&self) -> impl Iterator<Item = (Pose, f64)> {
+        let pusher = (self.pusher, self.direction);
+        std::iter::once(pusher).chain(self.other_fingers.iter().copied())
     }
 }
 
@@ -136,18 +144,21 @@ mod tests {
     }
 
     #[test]
-    fn commanded_pose_moves_along_the_direction() {
+    fn fingers_move_along_their_directions() {
         let start = Start {
             object: Pose::default(),
             pusher: Pose::new(1.0, 2.0, 0.5),
             direction: std::f64::consts::FRAC_PI_2,
+            other_fingers: vec![(Pose::new(1.0, 9.0, 0.25), -std::f64::consts::FRAC_PI_2)],
             speed: SpeedProfile::constant(0.5),
             duration: 4.0,
         };
-        let pose = start.commanded(2.0);
-        assert!(
-            (pose.x - 1.0).abs() < 1e-15 && (pose.y, pose.theta) == (3.0, 0.5),
-            "{pose:?}"
-        );
+        let poses: Vec<Pose> = start.fingers_at(start.speed.travel(2.0)).collect();
+        let expected = [Pose::new(1.0, 3.0, 0.5), Pose::new(1.0, 8.0, 0.25)];
+        for (pose, expected) in poses.iter().zip(expected) {
+            assert!((pose.x - expected.x).abs() < 1e-15, "{poses:?}");
+            assert_eq!((pose.y, pose.theta), (expected.y, expected.theta));
+        }
+        assert_eq!(poses.len(), 2);
     }
 }

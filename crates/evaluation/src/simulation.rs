@@ -182,13 +182,19 @@ fn tracker(setup: &Setup, options: &SimulationOptions) -> TrackingCamera {
 fn log(trace: &Trace, measurements: &[CameraMeasurement]) -> Log {
     let frames = &trace.frames;
     let sensors = frames.first().map_or(0, |frame| frame.tactile.len());
+    let fingers = frames.first().map_or(1, |frame| frame.finger_forces.len());
     let reading = |k: usize| frames.iter().map(move |frame| Some(frame.tactile[k]));
     Log {
         time: frames.iter().map(|frame| frame.time).collect(),
         object: measurements.iter().map(|seen| Some(seen.object)).collect(),
         object_covariance: Vec::new(),
         pusher: measurements.iter().map(|seen| Some(seen.pusher)).collect(),
-        other_fingers: Vec::new(),
+        other_fingers: (0..fingers - 1)
+            .map(|k| {
+                let seen = measurements.iter();
+                seen.map(|seen| Some(seen.other_fingers[k])).collect()
+            })
+            .collect(),
         tactile: (0..sensors).map(|k| reading(k).collect()).collect(),
         force: Vec::new(),
     }
@@ -214,30 +220,40 @@ const FORCE_NOISE: u32 = FORCE_BIAS + 1;
 fn truth(trace: &Trace) -> Truth {
     let frames = &trace.frames;
     let size = |[x, y]: [f64; 2]| (x * x + y * y).sqrt();
-    let fixel_force = |j: usize| frames.iter().map(move |frame| frame.fixel_forces[j]);
+    // columns force_1, ...: of fixels, then of a hand's other fingers
+    let others = |frame: &Frame| [&frame.fixel_forces, &frame.finger_forces[1..]].concat();
+    let forces: Vec<Vec<f64>> = frames.iter().map(others).collect();
+    let columns = forces.first().map_or(0, Vec::len);
     Truth {
         time: frames.iter().map(|frame| frame.time).collect(),
         pose: frames.iter().map(|frame| frame.object).collect(),
         twist: frames.iter().map(|frame| frame.twist).collect(),
         pusher: frames.iter().map(|frame| frame.pusher).collect(),
         pusher_force: frames.iter().map(|f| size(f.pusher_force)).collect(),
-        fixel_forces: (0..fixels(trace))
-            .map(|j| fixel_force(j).collect())
+        fixel_forces: (0..columns)
+            .map(|j| forces.iter().map(|row| row[j]).collect())
             .collect(),
     }
 }
 
-fn fixels(trace: &Trace) -> usize {
-    let first = trace.frames.first();
-    first.map_or(0, |frame| frame.fixel_forces.len())
+/// The bodies besides the pusher: fixels, then a hand's other fingers.
+fn others(trace: &Trace) -> impl Iterator<Item = Body> {
+    let (fixels, fingers) = trace.frames.first().map_or((0, 1), |frame| {
+        (frame.fixel_forces.len(), frame.finger_forces.len())
+    });
+    let fixels = (0..fixels).map(Body::Fixel);
+    fixels.chain((1..fingers).map(Body::Finger))
 }
 
 fn facts(trace: &Trace, known: &TruthFacts, options: &SimulationOptions) -> TruthFacts {
     let SimulationOptions { physics, seed, .. } = options;
     let lead = (BLACKOUT_LEAD * options.rate).round() as usize;
-    let before_contact = trace
-        .first_fixel_contact()
-        .map(|row| row.saturating_sub(lead));
+    // a hand hides the object from before its first touch on
+    let hand = others(trace).any(|body| matches!(body, Body::Finger(_)));
+    let fingers = hand.then_some(Body::Finger(0)).into_iter();
+    let first = fingers.chain(others(trace));
+    let first = first.filter_map(|body| trace.first_contact(body)).min();
+    let before_contact = first.map(|row| row.saturating_sub(lead));
     TruthFacts {
         source: Some(format!(
             "stickslip simulate, {}, seed {seed}",
@@ -248,8 +264,8 @@ fn facts(trace: &Trace, known: &TruthFacts, options: &SimulationOptions) -> Trut
         mu_f: Some(trace.friction.mu_f),
         d_tri: Some(trace.friction.d_tri),
         first_pusher_contact: trace.first_contact(Body::Finger(0)),
-        first_fixel_contacts: (0..fixels(trace))
-            .map(|j| trace.first_contact(Body::Fixel(j)))
+        first_fixel_contacts: others(trace)
+            .map(|body| trace.first_contact(body))
             .collect(),
         occlude_from: known
             .occlude_from

@@ -22,7 +22,8 @@ pub struct TruthFacts {
     pub d_tri: Option<f64>,
     /// Log row of the first contact with the pusher, from 0.
     pub first_pusher_contact: Option<usize>,
-    /// Log row of the first contact with each fixel; empty where the file does not say.
+    /// Log row of the first contact with each fixel, then with each other finger of a hand; empty
+    /// where the file does not say.
     pub first_fixel_contacts: Vec<Option<usize>>,
     /// First log row without the camera.
     pub occlude_from: Option<usize>,

@@ -386,8 +386,10 @@ impl ReportedExperiment<'_> {
     }
 }
 
-/// "pusher", "fixel 1", "finger 1", in a scene with so many `fixels`.
-pub(crate) fn body_name(body: usize, fixels: usize) -> String {
+/// Name of a body by its number in contacts: "pusher" (0), "fixel 1", then "finger 1", in a scene
+/// with so many `fixels`.
+#[must_use]
+pub fn body_name(body: usize, fixels: usize) -> String {
     match body {
         0 => "pusher".to_owned(),
         _ if body > fixels => format!("finger {}", body - fixels),

@@ -1,7 +1,8 @@
 //! The model in the rig's place: [`Model`] runs Γ itself, one step per frame.
 
 use stickslip_dynamics::{
-    Body, Dynamics, FingerMotion, Friction, Outcome, Particle, Pose, StepInput, StepWork,
+    Body, Dynamics, FingerMotion, Friction, Outcome, Particle, Pose, PusherMotion, StepInput,
+    StepWork, Twist,
 };
 
 use crate::touch::TouchSensors;
@@ -41,30 +42,32 @@ impl Model {
         } = self.friction;
         trial.check([("mu_s", mu_s), ("mu_p", mu_p), ("mu_f", mu_f)])?;
         let (dynamics, h) = (Dynamics::new(trial.scene.clone()), 1.0 / trial.rate);
-        let direction = trial.start.direction_vector();
+        let directions: Vec<[f64; 2]> = trial.start.directions().collect();
+        let commanded = |k: usize| {
+            let way = trial.start.speed.travel(trial.time(k));
+            trial.start.fingers_at(way).collect::<Vec<Pose>>()
+        };
         let mut object = Particle {
             pose: trial.start.object,
             ..Particle::default()
         };
-        let (mut pusher, mut work, mut unsolved) =
-            (trial.start.pusher, StepWork::<1>::default(), 0);
-        let mut frames = vec![frame(trial, 0, &object, pusher, Vec::new())];
+        let (mut fingers, mut work, mut unsolved) = (commanded(0), StepWork::<1>::default(), 0);
+        let mut frames = vec![frame(trial, 0, &object, &fingers, Vec::new())];
         for k in 1..trial.frames() {
             progress(k);
-            let twist = trial
-                .start
-                .commanded(trial.time(k - 1))
-                .twist_to(trial.start.commanded(trial.time(k)), h);
+            let ways = commanded(k - 1).into_iter().zip(commanded(k));
+            let twists: Vec<Twist> = ways.map(|(from, to)| from.twist_to(to, h)).collect();
+            let motions = fingers.iter().zip(&twists).zip(&directions);
+            let motions = motions.map(|((pose, twist), direction)| {
+                Some(FingerMotion {
+                    pose: *pose,
+                    twist: *twist,
+                    direction: *direction,
+                })
+            });
             let input = StepInput {
                 h,
-                pusher: Some(
-                    FingerMotion {
-                        pose: pusher,
-                        twist,
-                        direction,
-                    }
-                    .into(),
-                ),
+                pusher: PusherMotion::new(motions),
             };
             let [report] = dynamics.step(
                 &input,
@@ -73,15 +76,17 @@ impl Model {
                 &mut work,
             );
             unsolved += usize::from(report.outcome != Outcome::Solved);
-            // the trace's pusher pose is exact: no lag is left to the particle
-            let [x, y] = std::mem::take(&mut object.pusher_lag[0]);
-            pusher = pusher.advance(twist, h);
-            (pusher.x, pusher.y) = (pusher.x - x, pusher.y - y);
+            // the trace's fingers are exact: no lag is left to the particle
+            let lags = std::mem::take(&mut object.pusher_lag);
+            for ((finger, twist), [x, y]) in fingers.iter_mut().zip(&twists).zip(lags) {
+                *finger = finger.advance(*twist, h);
+                (finger.x, finger.y) = (finger.x - x, finger.y - y);
+            }
             frames.push(frame(
                 trial,
                 k,
                 &object,
-                pusher,
+                &fingers,
                 contacts(&work, object.pose, h),
             ));
         }
@@ -125,7 +130,7 @@ fn frame(
     trial: &Trial<'_>,
     k: usize,
     object: &Particle,
-    pusher: Pose,
+    fingers: &[Pose],
     contacts: Vec<Contact>,
 ) -> Frame {
     let of = |body: Body| contacts.iter().filter(move |contact| contact.body == body);
@@ -135,14 +140,17 @@ fn frame(
             .fold(0.0, |sum, f| sum + f)
     };
     let normal = |c: &Contact| c.force[0] * c.normal[0] + c.force[1] * c.normal[1];
-    let fixel_force = |j: usize| of(Body::Fixel(j)).map(normal).fold(0.0, |sum, f| sum + f);
+    let force = |body: Body| of(body).map(normal).fold(0.0, |sum, f| sum + f);
+    let fixels = (0..trial.scene.fixels.len()).map(Body::Fixel);
     Frame {
         time: trial.time(k),
         object: object.pose,
         twist: object.twist,
-        pusher,
+        pusher: fingers[0],
+        other_fingers: fingers[1..].to_vec(),
         pusher_force: [along(0), along(1)],
-        fixel_forces: (0..trial.scene.fixels.len()).map(fixel_force).collect(),
+        fixel_forces: fixels.map(force).collect(),
+        finger_forces: (0..fingers.len()).map(Body::Finger).map(force).collect(),
         contacts,
         tactile: Vec::new(),
     }

@@ -1,11 +1,11 @@
-//! Binary touch sensors on the fixels: [`TouchSensors`].
+//! Binary touch sensors on fixels, and on the fingers of a hand: [`TouchSensors`].
 
 use stickslip_filter::{Purpose, Streams};
 
 use crate::trace::Frame;
 use crate::trial::Trial;
 
-/// Sensors that compare a fixel's mean force over a frame's interval with a threshold; they chatter
+/// Sensors that compare a body's mean force over a frame's interval with a threshold; they chatter
 /// and drop out.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TouchSensors {
@@ -39,9 +39,10 @@ impl TouchSensors {
     pub(crate) fn write_readings(&self, frames: &mut [Frame], trial: &Trial<'_>) {
         let streams = Streams::new(trial.seed).of(Purpose::Measure);
         let dropout_probability = 1.0 - libm::exp(-self.dropouts / trial.rate);
-        let mut silent_until = vec![0.0; trial.scene.fixels.len()];
+        let mut silent_until = vec![0.0; trial.scene.sensors()];
         for (k, frame) in frames.iter_mut().enumerate() {
             let draw = streams.at(k as u64);
+            let forces = frame.fixel_forces.iter().chain(&frame.finger_forces);
             let reading = |(sensor, force): (usize, &f64)| {
                 let number = sensor as u32;
                 if frame.time >= silent_until[sensor]
@@ -54,7 +55,8 @@ impl TouchSensors {
                     force + (self.noise + self.relative_noise * force) * draw.normal(number, 0);
                 sensed > self.threshold && frame.time >= silent_until[sensor]
             };
-            frame.tactile = frame.fixel_forces.iter().enumerate().map(reading).collect();
+            let sensors = forces.take(trial.scene.sensors());
+            frame.tactile = sensors.enumerate().map(reading).collect();
         }
     }
 }
@@ -77,6 +79,7 @@ mod tests {
             object,
             pusher,
             direction: 0.0,
+            other_fingers: vec![],
             speed: SpeedProfile::constant(0.0),
             duration: 1.0,
         };
@@ -91,9 +94,11 @@ mod tests {
             object,
             twist: Twist::default(),
             pusher,
+            other_fingers: vec![],
             contacts: vec![],
             pusher_force: [0.0; 2],
             fixel_forces: vec![force],
+            finger_forces: vec![0.0],
             tactile: vec![],
         };
         let mut frames: Vec<Frame> = (0..FRAMES).map(frame).collect();

@@ -25,13 +25,17 @@ pub struct Frame {
     pub twist: Twist,
     /// Pose of the pusher.
     pub pusher: Pose,
+    /// Poses of a hand's other fingers.
+    pub other_fingers: Vec<Pose>,
     /// Contacts at this instant.
     pub contacts: Vec<Contact>,
     /// Force of the pusher on the object, mean over the interval that ends here (N).
     pub pusher_force: [f64; 2],
     /// Normal force of each fixel on the object, mean over the interval that ends here (N).
     pub fixel_forces: Vec<f64>,
-    /// Readings of the fixels' touch sensors for that interval.
+    /// Normal force of each finger, the pusher's first, over the same interval (N).
+    pub finger_forces: Vec<f64>,
+    /// Readings of the touch sensors for that interval: of fixels, then of a hand's fingers.
     pub tactile: Vec<bool>,
 }
 
@@ -59,7 +63,7 @@ impl Trace {
     /// The first frame in whose interval a body pressed on the object.
     pub fn first_contact(&self, body: Body) -> Option<usize> {
         self.frames.iter().position(|frame| match body {
-            Body::Finger(_) => frame.pusher_force != [0.0; 2],
+            Body::Finger(k) => frame.finger_forces.get(k).is_some_and(|force| *force > 0.0),
             Body::Fixel(j) => frame.fixel_forces.get(j).is_some_and(|force| *force > 0.0),
         })
     }

@@ -10,6 +10,14 @@ const OBJECT: u32 = u32::MAX;
 const PUSHER: u32 = u32::MAX - 1;
 const REPEAT: u32 = u32::MAX - 2;
 
+/// Number of the draws of a finger, the pusher's for the first.
+fn finger_number(finger: usize) -> u32 {
+    match finger {
+        0 => PUSHER,
+        _ => REPEAT - finger as u32,
+    }
+}
+
 /// A camera that tracks object and pusher, by its errors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrackingCamera {
@@ -31,12 +39,14 @@ pub struct TrackingCamera {
 }
 
 /// Measurement of one frame.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct CameraMeasurement {
     /// Pose of the object.
     pub object: Pose,
     /// Pose of the pusher.
     pub pusher: Pose,
+    /// Poses of a hand's other fingers; each has an error as the pusher's, and of its own.
+    pub other_fingers: Vec<Pose>,
     /// True if the frame repeats the one before.
     pub repeated: bool,
 }
@@ -57,7 +67,9 @@ impl TrackingCamera {
     pub fn measure(&self, trace: &Trace, seed: u64) -> Vec<CameraMeasurement> {
         let streams = Streams::new(seed).of(Purpose::Measure);
         let mut measured: Vec<CameraMeasurement> = Vec::with_capacity(trace.frames.len());
-        let mut drift = [0.0; 3];
+        let fingers = trace.frames.first();
+        let fingers = fingers.map_or(0, |frame| 1 + frame.other_fingers.len());
+        let mut drifts = vec![[0.0; 3]; fingers];
         for (k, frame) in trace.frames.iter().enumerate() {
             let draw = streams.at(k as u64);
             let noisy = |pose: Pose, [x, y, theta]: [f64; 3], [position, angle]: [f64; 2]| {
@@ -68,7 +80,7 @@ impl TrackingCamera {
                 )
             };
 
-            // the pusher's error keeps a part of what it was, and its variance
+            // a finger's error keeps a part of what it was, and its variance
             let kept = match k.checked_sub(1) {
                 Some(before) if self.pusher_memory > 0.0 => {
                     let age = frame.time - trace.frames[before].time;
@@ -77,26 +89,32 @@ impl TrackingCamera {
                 _ => 0.0,
             };
             let fresh = (1.0 - kept * kept).sqrt();
-            for (error, new) in drift.iter_mut().zip(draw.normals::<3>(PUSHER, 0)) {
-                *error = kept * *error + fresh * new;
+            for (finger, drift) in drifts.iter_mut().enumerate() {
+                let news = draw.normals::<3>(finger_number(finger), 0);
+                for (error, new) in drift.iter_mut().zip(news) {
+                    *error = kept * *error + fresh * new;
+                }
             }
+            let pusher_std = [self.pusher_position_std, self.pusher_orientation_std];
+            let others = frame.other_fingers.iter().zip(&drifts[1..]);
             let repeated = measured
                 .last()
-                .copied()
+                .cloned()
                 .filter(|_| draw.uniform(REPEAT, 0) < self.repeats);
             measured.push(repeated.map_or_else(
-                || CameraMeasurement {
-                    object: noisy(
-                        object_at(trace, frame.time - self.latency),
-                        draw.normals(OBJECT, 0),
-                        [self.position_std, self.orientation_std],
-                    ),
-                    pusher: noisy(
-                        frame.pusher,
-                        drift,
-                        [self.pusher_position_std, self.pusher_orientation_std],
-                    ),
-                    repeated: false,
+                || {
+                    CameraMeasurement {
+                        object: noisy(
+                            object_at(trace, frame.time - self.latency),
+                            draw.normals(OBJECT, 0),
+                            [self.position_std, self.orientation_std],
+                        ),
+                        pusher: noisy(frame.pusher, drifts[0], pusher_std),
+                        other_fingers: others
+                            .map(|(pose, drift)| noisy(*pose, *drift, pusher_std))
+                            .collect(),
+                        repeated: false,
+                    }
                 },
                 |before| CameraMeasurement {
                     repeated: true,
@@ -141,9 +159,11 @@ mod tests {
                 object: Pose::new(0.03 * time, 0.0, time),
                 twist: Twist::default(),
                 pusher: Pose::new(-1.0, 2.0, 0.5),
+                other_fingers: vec![Pose::new(1.0, 3.0, 0.25)],
                 contacts: vec![],
                 pusher_force: [0.0; 2],
                 fixel_forces: vec![],
+                finger_forces: vec![],
                 tactile: vec![],
             }
         };
@@ -172,7 +192,9 @@ mod tests {
             measured
                 .iter()
                 .zip(&trace.frames)
-                .all(|(s, f)| (s.object, s.pusher) == (f.object, f.pusher) && !s.repeated)
+                .all(|(s, f)| (s.object, s.pusher) == (f.object, f.pusher)
+                    && s.other_fingers == f.other_fingers
+                    && !s.repeated)
         );
     }
 
@@ -195,6 +217,10 @@ mod tests {
             (error(&|s, f| s.object.y - f.object.y), 1e-3),
             (error(&|s, f| s.object.theta - f.object.theta), 0.02),
             (error(&|s, f| s.pusher.x - f.pusher.x), 1e-4),
+            (
+                error(&|s, f| s.other_fingers[0].x - f.other_fingers[0].x),
+                1e-4,
+            ),
             (error(&|s, f| s.pusher.theta - f.pusher.theta), 3e-3),
         ] {
             // 20 000 errors: a standard error of 0.5 %

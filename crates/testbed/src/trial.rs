@@ -30,14 +30,15 @@ pub enum TrialError {
         /// The rate found (Hz).
         rate: f64,
     },
-    /// A hand of several fingers.
+    /// A finger has no place at the start, or there is one too many.
     #[error(
-        "the scene has {} besides the pusher; simulations have one pusher. Remove the [[finger]] tables",
-        match fingers { 1 => "a [[finger]]".to_owned(), _ => format!("{fingers} [[finger]] tables") }
+        "the scene has {fingers} fingers and the start has {found}; give each [[finger]] its start = [x, y, theta]"
     )]
     Hand {
-        /// Fingers besides the pusher.
+        /// Fingers of the scene, the pusher among them.
         fingers: usize,
+        /// Fingers of the start.
+        found: usize,
     },
     /// A friction coefficient is none.
     #[error(
@@ -51,7 +52,7 @@ pub enum TrialError {
     },
     /// Bodies overlap at the start.
     #[error(
-        "at the start the object overlaps {} by {:.3} mm; bodies must be apart. Move the object or the pusher in [start], or the fixel",
+        "at the start the object overlaps {} by {:.3} mm; bodies must be apart. Move the object or the pusher in [start], the finger, or the fixel",
         body_name(*body), 1e3 * depth
     )]
     Overlap {
@@ -97,9 +98,10 @@ impl Trial<'_> {
         if !(1.0..=1000.0).contains(&self.rate) {
             return Err(TrialError::Rate { rate: self.rate });
         }
-        let fingers = self.scene.pusher.fingers.len() - 1;
-        if fingers > 0 {
-            return Err(TrialError::Hand { fingers });
+        let fingers = self.scene.pusher.fingers.len();
+        let found = self.start.directions().count();
+        if found != fingers {
+            return Err(TrialError::Hand { fingers, found });
         }
         if let Some((name, value)) = friction
             .into_iter()
@@ -107,11 +109,9 @@ impl Trial<'_> {
         {
             return Err(TrialError::Friction { name, value });
         }
-        let pusher = (
-            Body::Finger(0),
-            &self.scene.pusher.fingers[0],
-            self.start.pusher,
-        );
+        let shapes = self.scene.pusher.fingers.iter().enumerate();
+        let fingers = shapes.zip(self.start.fingers_at(0.0));
+        let fingers = fingers.map(|((k, shape), pose)| (Body::Finger(k), shape, pose));
         let fixels = self
             .scene
             .fixels
@@ -120,7 +120,7 @@ impl Trial<'_> {
             .map(|(j, fixel)| (Body::Fixel(j), &fixel.shape, fixel.pose));
         let object = Placed::new(&self.scene.object.shape, self.start.object);
         let mut gaps: Vec<Gap> = Vec::new();
-        for (body, shape, pose) in [pusher].into_iter().chain(fixels) {
+        for (body, shape, pose) in fingers.chain(fixels) {
             gaps.clear();
             narrow_phase(&object, &Placed::new(shape, pose), -ROUNDING, &mut gaps);
             if let Some(depth) = gaps.iter().map(|gap| -gap.gap).reduce(f64::max) {
@@ -133,7 +133,8 @@ impl Trial<'_> {
 
 fn body_name(body: Body) -> String {
     match body {
-        Body::Finger(_) => "the pusher".to_owned(),
+        Body::Finger(0) => "the pusher".to_owned(),
+        Body::Finger(k) => format!("finger {k}"),
         Body::Fixel(j) => format!("fixel {}", j + 1),
     }
 }

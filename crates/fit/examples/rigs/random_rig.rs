@@ -227,6 +227,7 @@ fn start(outline: &Outline, told: &Setup, seed: u64, k: u32) -> Start {
         object: Pose::default(),
         pusher: Pose::new(centre[0], centre[1], 0.0),
         direction,
+        other_fingers: Vec::new(),
         speed: SpeedProfile::constant(0.015),
         duration: 1.5 + 1.5 * draw.uniform(k, 3),
     }

@@ -83,7 +83,7 @@ const TABLES: [(&str, &[Key]); 16] = [
         of(Table, "support", Required, "the contact of object and table"),
         of(Table, "pusher", Required, "the pusher"),
         of(Tables, "finger", Optional,
-            "each other finger of a hand, as a table [[finger]] with the key shape")
+            "each other finger of a hand, as a table [[finger]] with the keys shape, start, direction")
             .note("Friction and stall_force are the pusher's."),
         of(Table, "fixels", Required, "the friction of all fixels"),
         of(Tables, "fixel", Optional,
@@ -132,6 +132,10 @@ const TABLES: [(&str, &[Key]); 16] = [
     ]),
     ("finger", &[
         of(Shape, "shape", Required, OUTLINE),
+        of(Pose, "start", Optional, "the finger's pose as [x, y, theta] at the start of a simulation")
+            .note("Needed where there is [start]. It keeps its angle."),
+        number("direction", Radian, Turn, Derived("opposite to start.direction"),
+            "the direction of its motion in a simulation"),
     ]),
     ("fixels", &[
         number("friction", PLAIN, NotNegative, Required,

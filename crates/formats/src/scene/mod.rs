@@ -169,11 +169,10 @@ fn setup(root: &Table<'_>) -> Result<Setup> {
             Some(table) => uncertainty::uncertainty(&table, unknown)?,
             None => unknown,
         },
-        start: root
-            .section_if("start")?
-            .as_ref()
-            .map(start::start)
-            .transpose()?,
+        start: match root.section_if("start")? {
+            Some(table) => Some(start::start(&table, &fingers(root)?)?),
+            None => None,
+        },
         scene,
     })
 }
@@ -234,20 +233,27 @@ fn plate(table: &Table<'_>, key: &'static str) -> Result<Plate> {
 fn pusher(root: &Table<'_>, sliding: f64) -> Result<(f64, Pusher)> {
     let table = &root.section("pusher")?;
     let mut fingers = vec![shape(table)?];
-    if let Some(others) = root.optional("finger") {
-        for (k, other) in others.items()?.iter().enumerate() {
-            if k + 1 == MOST_FINGERS {
-                let most = MOST_FINGERS - 1;
-                return Err(other.error(SceneProblem::TooManyFingers { most }));
-            }
-            fingers.push(shape(&other.table()?)?);
-        }
+    for other in self::fingers(root)? {
+        fingers.push(shape(&other)?);
     }
     let pusher = Pusher {
         fingers,
         stall_force: stall_force(table, sliding)?,
     };
     Ok((table.number("friction")?, pusher))
+}
+
+/// The tables of a hand's other fingers.
+fn fingers<'a>(root: &Table<'a>) -> Result<Vec<Table<'a>>> {
+    let Some(others) = root.optional("finger") else {
+        return Ok(Vec::new());
+    };
+    let others = others.items()?;
+    let most = MOST_FINGERS - 1;
+    match others.get(most) {
+        Some(other) => Err(other.error(SceneProblem::TooManyFingers { most })),
+        None => others.iter().map(Node::table).collect(),
+    }
 }
 
 /// The force (N) at which the drive yields; `None` where the file says that it never does.

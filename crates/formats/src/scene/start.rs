@@ -1,5 +1,7 @@
 //! `[start]`.
 
+use std::f64::consts::{PI, TAU};
+
 use stickslip::{Rule, Unit};
 use stickslip_dynamics::{SpeedProfile, Start};
 
@@ -8,12 +10,19 @@ use super::error::SceneError;
 
 type Result<T> = std::result::Result<T, SceneError>;
 
-/// `[start]`.
-pub(super) fn start(table: &Table<'_>) -> Result<Start> {
+/// `[start]`, with what the `[[finger]]` tables say of it.
+pub(super) fn start(table: &Table<'_>, fingers: &[Table<'_>]) -> Result<Start> {
+    let direction = table.number_or("direction", 0.0)?;
+    let finger = |other: &Table<'_>| {
+        let opposite = (direction + TAU).rem_euclid(TAU) - PI;
+        let direction = other.number_or("direction", opposite)?;
+        Ok((other.required("start")?.pose()?, direction))
+    };
     Ok(Start {
         object: table.required("object")?.pose()?,
         pusher: table.required("pusher")?.pose()?,
-        direction: table.number_or("direction", 0.0)?,
+        direction,
+        other_fingers: fingers.iter().map(finger).collect::<Result<_>>()?,
         speed: speed(&table.required("speed")?)?,
         duration: table.number("duration")?,
     })

@@ -133,6 +133,7 @@ fn full_scene_start_arrives() {
         object: Pose::new(0.01, -0.02, 0.5),
         pusher: Pose::new(-0.08, 0.001, 0.0),
         direction: 0.125,
+        other_fingers: Vec::new(),
         speed: SpeedProfile::new(vec![[0.0, 0.0], [0.5, 0.02], [8.0, 0.02], [8.0, 0.0]])
             .expect("a profile"),
         duration: 12.5,

@@ -59,6 +59,7 @@ fn start(speed: f64) -> Start {
         object: Pose::default(),
         pusher,
         direction: 0.0,
+        other_fingers: Vec::new(),
         speed: SpeedProfile::constant(speed),
         duration: 1.0,
     }

@@ -17,7 +17,8 @@ const RESOLUTION: f64 = 0.2;
 pub(super) struct RigState<'a> {
     rig: &'a Rig,
     trial: &'a Trial<'a>,
-    direction: [f64; 2],
+    /// Direction of each finger.
+    directions: Vec<[f64; 2]>,
     fixels: Vec<Placed<'a>>,
     /// Pose of the object.
     pub object: Pose,
@@ -25,13 +26,14 @@ pub(super) struct RigState<'a> {
     pub twist: Twist,
     support: SupportFriction,
     drive: Drive<'a>,
-    /// With the pusher, then with each fixel.
+    /// With each finger, then with each fixel.
     compliant: Vec<CompliantContact>,
     gaps: Vec<Gap>,
     /// Contacts of the last step.
     pub contacts: Vec<Contact>,
-    /// Impulses since the last frame (N s): of the pusher, and normal ones of the fixels.
+    /// Impulses since the last frame (N s): of the pusher, and normal ones of fingers and fixels.
     pusher_impulse: [f64; 2],
+    finger_impulses: Vec<f64>,
     fixel_impulses: Vec<f64>,
     has_moved: bool,
 }
@@ -46,13 +48,12 @@ impl<'a> RigState<'a> {
             .iter()
             .map(|fixel| Placed::new(&fixel.shape, fixel.pose))
             .collect();
-        let mu = [rig.mu_p]
-            .into_iter()
-            .chain(fixels.iter().map(|_| rig.mu_f));
+        let directions: Vec<[f64; 2]> = start.directions().collect();
+        let mu = directions.iter().map(|_| rig.mu_p);
+        let mu = mu.chain(fixels.iter().map(|_| rig.mu_f));
         Ok(Self {
             rig,
             trial,
-            direction: start.direction_vector(),
             object: start.object,
             twist: Twist::default(),
             support: SupportFriction::new(
@@ -66,6 +67,8 @@ impl<'a> RigState<'a> {
             gaps: Vec::new(),
             contacts: Vec::new(),
             pusher_impulse: [0.0; 2],
+            finger_impulses: vec![0.0; directions.len()],
+            directions,
             fixel_impulses: vec![0.0; fixels.len()],
             fixels,
             has_moved: false,
@@ -91,7 +94,7 @@ impl<'a> RigState<'a> {
     pub(super) fn step(&mut self, time: f64, h: f64) {
         self.contacts.clear();
         let mut wrench = self.contact_wrench(h);
-        let on_pusher = self.add_impulses(h);
+        let on_drive = self.add_impulses(h);
 
         // before the first contact the object is at rest on relaxed bristles, which pull at nothing
         self.has_moved |= !self.contacts.is_empty() || self.twist != Twist::default();
@@ -105,16 +108,21 @@ impl<'a> RigState<'a> {
         self.twist.vy += h * wrench.fy / object.mass;
         self.twist.omega += h * wrench.torque / object.inertia;
         self.object = self.object.advance(self.twist, h);
-        self.drive.advance(time, h, on_pusher);
+        self.drive.advance(time, h, on_drive);
     }
 
     /// Contacts of the object with all bodies, and their wrench on it.
     fn contact_wrench(&mut self, h: f64) -> Wrench {
         let scene = self.trial.scene;
         let object = Placed::new(&scene.object.shape, self.object);
-        let pusher = Placed::new(&scene.pusher.fingers[0], self.pusher());
-        let velocity = self.direction.map(|d| d * self.drive.speed);
-        let mut wrench = self.contact(Body::Finger(0), (&object, &pusher), velocity, h);
+        let mut wrench = Wrench::default();
+        let poses = self.trial.start.fingers_at(self.drive.travel);
+        for ((k, shape), pose) in scene.pusher.fingers.iter().enumerate().zip(poses) {
+            let velocity = self.directions[k].map(|d| d * self.drive.speed);
+            let finger = Placed::new(shape, pose);
+            let own = self.contact(Body::Finger(k), (&object, &finger), velocity, h);
+            wrench = sum(wrench, own);
+        }
         for j in 0..self.fixels.len() {
             let fixel = self.fixels[j];
             wrench = sum(
@@ -136,7 +144,10 @@ impl<'a> RigState<'a> {
     ) -> Wrench {
         self.gaps.clear();
         narrow_phase(object, other, 0.0, &mut self.gaps);
-        let index = if let Body::Fixel(j) = body { 1 + j } else { 0 };
+        let index = match body {
+            Body::Finger(k) => k,
+            Body::Fixel(j) => self.directions.len() + j,
+        };
         let compliant = &mut self.compliant[index];
         let mut wrench = Wrench::default();
         for gap in &self.gaps {
@@ -167,49 +178,47 @@ impl<'a> RigState<'a> {
         wrench
     }
 
-    /// Adds up the contacts' impulses; returns the force of the object on the pusher along its
-    /// direction (N).
+    /// Adds up the contacts' impulses; returns the force of the object on the drive: on all
+    /// fingers, each along its direction (N).
     fn add_impulses(&mut self, h: f64) -> f64 {
         let mut along = 0.0;
         for contact in &self.contacts {
             let [fx, fy] = contact.force;
+            let normal = h * (fx * contact.normal[0] + fy * contact.normal[1]);
             match contact.body {
-                Body::Finger(_) => {
-                    along -= fx * self.direction[0] + fy * self.direction[1];
-                    self.pusher_impulse[0] += h * fx;
-                    self.pusher_impulse[1] += h * fy;
+                Body::Finger(k) => {
+                    let [along_x, along_y] = self.directions[k];
+                    along -= fx * along_x + fy * along_y;
+                    self.finger_impulses[k] += normal;
+                    if k == 0 {
+                        self.pusher_impulse[0] += h * fx;
+                        self.pusher_impulse[1] += h * fy;
+                    }
                 }
-                Body::Fixel(j) => {
-                    self.fixel_impulses[j] += h * (fx * contact.normal[0] + fy * contact.normal[1])
-                }
+                Body::Fixel(j) => self.fixel_impulses[j] += normal,
             }
         }
         along
     }
 
-    /// Pose of the pusher.
-    fn pusher(&self) -> Pose {
-        let Pose { x, y, theta } = self.trial.start.pusher;
-        Pose::new(
-            x + self.drive.travel * self.direction[0],
-            y + self.drive.travel * self.direction[1],
-            theta,
-        )
-    }
-
     /// The frame at `time`, with means over the `interval` that ends here (s); begins the next one.
     pub(super) fn frame(&mut self, time: f64, interval: f64) -> Frame {
+        let mut fingers: Vec<Pose> = self.trial.start.fingers_at(self.drive.travel).collect();
+        let mean = |impulses: &[f64]| impulses.iter().map(|p| p / interval).collect();
         let frame = Frame {
             time,
             object: self.object,
             twist: self.twist,
-            pusher: self.pusher(),
+            other_fingers: fingers.split_off(1),
+            pusher: fingers[0],
             contacts: self.contacts.clone(),
             pusher_force: self.pusher_impulse.map(|p| p / interval),
-            fixel_forces: self.fixel_impulses.iter().map(|p| p / interval).collect(),
+            fixel_forces: mean(&self.fixel_impulses),
+            finger_forces: mean(&self.finger_impulses),
             tactile: Vec::new(),
         };
         self.pusher_impulse = [0.0; 2];
+        self.finger_impulses.fill(0.0);
         self.fixel_impulses.fill(0.0);
         frame
     }

@@ -70,6 +70,7 @@ fn simulated(truth: &Setup, physics: Physics, k: usize, seed: u64) -> (Push, Tru
             0.0,
         ),
         direction,
+        other_fingers: Vec::new(),
         speed: SpeedProfile::constant(0.015),
         duration: 2.5,
     });

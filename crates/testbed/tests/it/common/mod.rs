@@ -16,6 +16,7 @@ pub fn bench_start() -> Start {
         object: Pose::default(),
         pusher: Pose::new(-0.032, -0.0033, 0.0),
         direction: 0.0,
+        other_fingers: Vec::new(),
         speed,
         duration: 8.0,
     }
