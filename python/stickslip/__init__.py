@@ -27,7 +27,7 @@ from stickslip._page import Page, report
 from stickslip._rollout import Rollout, rollout
 from stickslip._score import score
 from stickslip._simulate import Simulation, simulate
-from stickslip._tracker import Row, Tracker, rows
+from stickslip._tracker import Outcomes, Row, Tracker, rows
 
 __all__ = [
     "Columns",
@@ -38,6 +38,7 @@ __all__ = [
     "Finding",
     "Fit",
     "Log",
+    "Outcomes",
     "Outlines",
     "Page",
     "Polygons",

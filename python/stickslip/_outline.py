@@ -20,11 +20,13 @@ Polygons = list[NDArray[np.float64]]
 
 @dataclass(frozen=True)
 class Outlines:
-    """Bodies of a scene: object and pusher in their own frames, fixels in the world frame."""
+    """Bodies of a scene: object and fingers in their own frames, fixels in the world frame."""
 
     object: Polygons
     pusher: Polygons
     fixels: list[Polygons]
+    #: Other fingers of a hand.
+    fingers: list[Polygons]
 
 
 def outlines(scene: Scene) -> Outlines:
@@ -34,7 +36,8 @@ def outlines(scene: Scene) -> Outlines:
         placed(_parts(fixel["shape"]), (*fixel["position"], fixel.get("angle", 0.0)))
         for fixel in bodies.get("fixel", [])
     ]
-    return Outlines(_parts(bodies["object"]["shape"]), _parts(bodies["pusher"]["shape"]), fixels)
+    fingers = [_parts(finger["shape"]) for finger in bodies.get("finger", [])]
+    return Outlines(_parts(bodies["object"]["shape"]), _parts(bodies["pusher"]["shape"]), fixels, fingers)
 
 
 def placed(polygons: Polygons, pose: ArrayLike) -> Polygons:

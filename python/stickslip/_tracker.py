@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from typing import Any, Literal, TypedDict
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from stickslip import _native
 from stickslip._columns import Log, is_missing, numbers
@@ -43,6 +43,32 @@ class Row(TypedDict):
     tactile: Sequence[bool | int | None]
     #: Force of the pusher on the object, world frame (N).
     force: Sequence[float] | None
+
+
+class Outcomes(TypedDict):
+    """Probabilities of the end of a plan: the first five exclude each other and sum to 1."""
+
+    #: The object rests, the drive yields, and the contacts that press balance any force and torque.
+    held: float
+    #: The object rests and the drive yields, without such a form closure.
+    jammed: float
+    #: The object rests at a body, and the drive does not yield.
+    resting: float
+    #: The object moves, and a body touches it.
+    moving: float
+    #: No body touches the object.
+    lost: float
+    #: Sets of bodies that touch and their probabilities, the likeliest first.
+    contacts: list[tuple[list[str], float]]
+    #: Mean of the final poses (m, m, rad) and their standard deviations.
+    x: float
+    y: float
+    theta: float
+    std_x: float
+    std_y: float
+    std_theta: float
+    #: Probability that the last step has no certified solution.
+    unsolved: float
 
 
 class Tracker:
@@ -131,6 +157,21 @@ class Tracker:
         ``d_tri`` (m).
         """
         return self._tracker.particles()
+
+    def outcomes(self, plan: ArrayLike, *, h: float = 1.0 / 30.0) -> Outcomes:
+        """Predicts how the fingers' intended motion ends, by the particles themselves.
+
+        ``plan``: intended poses of the pusher from the latest row on, ``h`` (s) apart, (T + 1, 3): x, y
+        (m), theta (rad); for a hand, those of the other fingers follow, (T + 1, 3 F). Copies of the
+        particles move with their velocities, friction, offsets and random forces. A drive with a
+        stall force yields. Let a grasp go on closing at its end: a drive that stands presses with an
+        unknown force, and such an end counts as resting. The tracker does not change.
+        """
+        path = numbers(plan, "plan")
+        if path.ndim != 2 or path.shape[1] % 3 or not path.size:
+            raise Error(f"plan has the shape {path.shape}; it must be (T + 1, 3 F) with F fingers, the pusher first")
+        fingers = np.moveaxis(path.reshape(len(path), -1, 3), 1, 0)
+        return self._tracker.outcomes(fingers.tolist(), h)  # type: ignore[return-value]
 
     def copy(self) -> Tracker:
         """Returns a tracker that goes on by itself: equal rows give it equal estimates."""

@@ -1,4 +1,4 @@
-"""Choice of a push: by distance to a goal, risk of a jam, or information about friction.
+"""Choice of a push: by distance to a goal, risk of a jam, or information about friction; of a grasp: by how it ends.
 
 >>> from stickslip import plan
 >>> pushes = plan.straight_pushes(scene, pose=(0, 0, 0), count=500, length=0.05)  # doctest: +SKIP
@@ -19,8 +19,9 @@ from stickslip._native import Error, Scene
 from stickslip._options import Progress
 from stickslip._outline import outlines
 from stickslip._rollout import FRICTION, rollout
+from stickslip._tracker import Outcomes, Tracker
 
-__all__ = ["Outcome", "predict", "prior", "straight_pushes"]
+__all__ = ["Outcome", "grasp", "jaw_closings", "predict", "prior", "straight_pushes"]
 
 #: Distance between object and pusher at the start of a candidate (m).
 _CLEARANCE = 2e-3
@@ -153,6 +154,57 @@ def straight_pushes(
     travelled = speed * h * np.arange(steps + 1)
     places = start[:, None, :] + travelled[None, :, None] * ahead[:, None, :]
     return np.concatenate([places, np.broadcast_to(angle[:, None, None], (count, steps + 1, 1))], axis=2)
+
+
+def jaw_closings(
+    scene: Scene,
+    pose: ArrayLike,
+    *,
+    angles: ArrayLike,
+    offsets: ArrayLike = (0.0,),
+    speed: float = 0.02,
+    h: float = 1.0 / 30.0,
+) -> NDArray[np.float64]:
+    """Returns the closings of a jaw about an object at ``pose`` (m, m, rad).
+
+    The scene has one ``[[finger]]`` beside the pusher. Every angle (rad, direction of the pusher's
+    motion in the world) is combined with every offset (m) of the fingers' line across it, from the
+    object's centre. The jaw begins clear of the object, and each finger moves at ``speed`` (m/s)
+    until both would meet. Both are turned by the angle. The result is (N, T + 1, 6), ``h`` (s)
+    apart: poses of the pusher, then of the finger.
+    """
+    if scene.fingers != 1:
+        raise Error(f"the scene has {scene.fingers} [[finger]] tables; a jaw has one beside the pusher")
+    if not (speed > 0 and h > 0):
+        raise Error("speed and h must be above 0")
+    x, y, _ = numbers(pose, "pose")
+    bodies = outlines(scene)
+    half = max(_radius(bodies.pusher), _radius(bodies.fingers[0]))
+    opening = _radius(bodies.object) + half + _CLEARANCE
+    steps = max(1, int(np.ceil((opening - half) / (speed * h))))
+    travelled = np.minimum(speed * h * np.arange(steps + 1), opening - half)
+    angle, aside = (grid.ravel() for grid in np.meshgrid(numbers(angles, "angles"), numbers(offsets, "offsets")))
+    ahead = np.column_stack([np.cos(angle), np.sin(angle)])
+    middle = np.array([x, y]) + aside[:, None] * np.column_stack([-ahead[:, 1], ahead[:, 0]])
+    turned = np.broadcast_to(angle[:, None, None], (len(angle), steps + 1, 1))
+    away = (opening - travelled)[None, :, None] * ahead[:, None, :]
+    return np.concatenate([middle[:, None] - away, turned, middle[:, None] + away, turned], axis=2)
+
+
+def grasp(
+    tracker: Tracker, closings: ArrayLike, *, wanted: str = "held", h: float = 1.0 / 30.0
+) -> tuple[int, list[Outcomes]]:
+    """Returns the closing that ends as ``wanted`` with the highest probability, and how each ends.
+
+    ``closings``: paths of the fingers (N, T + 1, 3 F), ``h`` (s) apart, as from
+    :func:`jaw_closings`. ``wanted``: a key of :class:`stickslip.Outcomes`. Every path is rolled out
+    by the tracker's particles (see :meth:`stickslip.Tracker.outcomes`).
+    """
+    ends = [tracker.outcomes(path, h=h) for path in numbers(closings, "closings")]
+    if not ends or wanted not in ("held", "jammed", "resting", "moving", "lost"):
+        raise Error(f"wanted is {wanted!r}; it must be held, jammed, resting, moving or lost, and closings not empty")
+    chances = [float(end[wanted]) for end in ends]  # type: ignore[literal-required]
+    return int(np.argmax(chances)), ends
 
 
 def _radius(polygons: list[NDArray[np.float64]]) -> float:

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import stickslip
+from stickslip import plan
 
 
 def test_a_tracker_has_the_bits_of_the_causal_filter(demo, scene):
@@ -77,6 +78,8 @@ def test_hand_is_tracked_and_rolled_out() -> None:
     assert abs(estimate["x"]) < 1e-3 and estimate["contact_1"] > 0.5
     with pytest.raises(stickslip.Error, match=r"\(1, T \+ 1, 6\)"):
         stickslip.rollout(jaw, [[0.0, 0.0, 0.0]], fingers[:, :3])
+
+
 def test_a_copy_goes_on_by_itself(demo, scene):
     log = stickslip.load_log(demo / "log.csv")
     rows = list(stickslip.rows(log))
@@ -99,3 +102,38 @@ def test_a_copy_goes_on_by_itself(demo, scene):
     assert set(cloud) | {"row"} == set(run)
     for name, column in cloud.items():
         np.testing.assert_array_equal(column, run[name][0], err_msg=name)
+
+
+def test_how_a_grasp_ends_is_predicted_and_the_best_one_chosen() -> None:
+    finger = {"shape": [{"polygon": [[-0.004, -0.01], [0.004, -0.01], [0.004, 0.01], [-0.004, 0.01]]}]}
+    bar = [{"polygon": [[-0.03, -0.01], [0.03, -0.01], [0.03, 0.01], [-0.03, 0.01]]}]
+    jaw = stickslip.Scene.from_numbers(
+        gravity=9.81,
+        object={"mass": 0.5, "shape": bar},
+        support={"friction": 0.3},
+        pusher={**finger, "friction": 0.3, "stall_force": 20.0},
+        finger=[finger],
+        fixels={"friction": 0.25},
+        camera={"position_std": 3e-4, "orientation_std": 5e-3},
+    )
+    tracker = stickslip.Tracker(jaw, particles=64)
+    with pytest.raises(stickslip.Error, match="no pose of the object"):
+        tracker.outcomes(np.zeros((2, 6)))
+    for row in range(3):
+        tracker.push(row / 30, object=(1e-9 * row, 0.0, 0.0), pusher=(-0.05, 0, 0), fingers=[(0.05, 0, 0)])
+    before = tracker.estimate
+    # across the bar, and past its end
+    closings = plan.jaw_closings(jaw, (0.0, 0.0, 0.0), angles=[np.pi / 2], offsets=[0.0, 0.05])
+    best, ends = plan.grasp(tracker, closings)
+    assert best == 0 and ends[0]["held"] > 0.9 and ends[1]["lost"] > 0.9
+    assert ends[0]["contacts"][0] == (["pusher", "finger 1"], pytest.approx(1.0, abs=0.1))
+    sums = [end["held"] + end["jammed"] + end["resting"] + end["moving"] + end["lost"] for end in ends]
+    np.testing.assert_allclose(sums, 1.0)
+    assert abs(ends[0]["y"]) < 1e-3 and ends[0]["std_y"] < 1e-3
+    # the tracker stays as it is
+    np.testing.assert_equal(tracker.estimate, before)
+    for words, path in [("must be", closings), ("pusher and its", closings[0][:, :3])]:
+        with pytest.raises(stickslip.Error, match=words):
+            tracker.outcomes(path)
+    with pytest.raises(stickslip.Error, match="wanted is 'kept'"):
+        plan.grasp(tracker, closings, wanted="kept")

@@ -64,7 +64,7 @@ const ESTIMATOR: (&str, &[Layer]) = (
             "log",
             "occlusion",
         ],
-        &["pusher/", "options"],
+        &["pusher/", "options", "outcomes"],
         &[
             "particle/set/",
             "particle/unknown/",

@@ -1,5 +1,6 @@
 //! Input of one time step: [`StepInput`].
 
+use std::fmt;
 use std::ops::{Deref, DerefMut};
 
 use stickslip_lanes::Lanes;
@@ -116,12 +117,23 @@ pub struct StepInput {
 }
 
 /// A body that the object may touch.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Body {
     /// The pusher's finger of this index; a pusher without others is finger 0.
     Finger(usize),
     /// The fixel of this index.
     Fixel(usize),
+}
+
+/// `pusher`, `finger 1`, `fixel 1`: other fingers and fixels count from 1, as in files.
+impl fmt::Display for Body {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Finger(0) => f.write_str("pusher"),
+            Self::Finger(k) => write!(f, "finger {k}"),
+            Self::Fixel(j) => write!(f, "fixel {}", j + 1),
+        }
+    }
 }
 
 impl Body {

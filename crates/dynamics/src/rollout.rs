@@ -113,11 +113,11 @@ impl Dynamics {
     /// a pusher of its own.
     ///
     /// `pushers` holds the poses of the pusher's fingers where steps begin and end, (N, T + 1,
-    /// fingers), trajectory after trajectory: start i under pusher i. The pusher moves straight from one to the next; where
-    /// the scene gives it a stall force, it may fall behind, by as much as the object holds it
-    /// back. A trajectory depends on nothing but its start and its pusher, and is the same, bit for
-    /// bit, as step by step with [`Dynamics::step`]. One thread runs; share the starts among
-    /// threads for more.
+    /// fingers), trajectory after trajectory: start i under pusher i. The pusher moves straight
+    /// from one to the next; where the scene gives it a stall force, it may fall behind, by as much
+    /// as the object holds it back. A trajectory depends on nothing but its start and its pusher,
+    /// and is the same, bit for bit, as step by step with [`Dynamics::step`]. One thread runs;
+    /// share the starts among threads for more.
     ///
     /// Two starts, and two pushes that end 1 mm and 11 mm beyond the first touch:
     ///

@@ -125,9 +125,13 @@ impl EstimateRow {
     /// is learned of friction while it rests.
     #[must_use]
     pub fn moves(&self) -> bool {
-        self.twist
-            .is_some_and(|v| v.vx.hypot(v.vy) > MOVING || v.omega.abs() > TURNING)
+        self.twist.as_ref().is_some_and(moves)
     }
+}
+
+/// Returns true if a twist is faster than 1 mm/s or turns faster than 0.03 rad/s.
+pub(crate) fn moves(twist: &Twist) -> bool {
+    twist.vx.hypot(twist.vy) > MOVING || twist.omega.abs() > TURNING
 }
 
 /// A method's estimates, one row per log row.

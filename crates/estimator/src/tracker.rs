@@ -9,6 +9,7 @@ use crate::error::RunError;
 use crate::estimate::EstimateRow;
 use crate::filter_model::FilterModel;
 use crate::options::{RunOptions, TactileUse};
+use crate::outcomes::{Outcomes, Plan, PlanError};
 use crate::particle::contact_filter::FilterOptions;
 use crate::particle::contact_filter::{ContactFilter, Measured};
 use crate::particle::sensor::observation::PoseAt;
@@ -368,6 +369,18 @@ impl<'o> Tracker<'o> {
             });
         }
         Ok(self.estimate())
+    }
+
+    /// Predicts how the pusher's intended motion will end, if nothing is measured on the way: moves
+    /// copies of the particles, with their velocities, friction and offsets, and with random
+    /// forces. The tracker stays as it is, and returns the same for the same plan.
+    ///
+    /// # Errors
+    /// If there is no particle yet, or the plan does not go with the scene.
+    pub fn outcomes(&self, plan: &Plan) -> Result<Outcomes, PlanError> {
+        plan.check(self.setup.scene.pusher.fingers.len())?;
+        let filter = self.filter.as_ref().ok_or(PlanError::NoPose)?;
+        Ok(filter.outcomes(&plan.steps(self.directions)))
     }
 
     /// The estimate at the latest row; its cells are empty before the first object pose.

@@ -19,7 +19,8 @@ use crate::named_columns::{ColumnError, NamedColumns};
 /// ```
 ///
 /// # Panics
-/// If `time` and `rows` differ in length, or a row has not one contact probability per fixel and other finger.
+/// If `time` and `rows` differ in length, or a row has not one contact probability per fixel and
+/// other finger.
 #[must_use]
 pub fn estimate_columns(estimate: &Estimate) -> Vec<(String, Vec<f64>)> {
     assert_eq!(estimate.time.len(), estimate.rows.len(), "one time per row");

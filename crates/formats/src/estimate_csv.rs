@@ -78,7 +78,8 @@ const CONTACT_PUSHER: usize = 11;
 /// Those of `writer`.
 ///
 /// # Panics
-/// If `time` and `rows` differ in length, or a row has not one contact probability per fixel and other finger.
+/// If `time` and `rows` differ in length, or a row has not one contact probability per fixel and
+/// other finger.
 pub fn write_estimate(mut writer: impl Write, estimate: &Estimate) -> std::io::Result<()> {
     assert_eq!(estimate.time.len(), estimate.rows.len(), "one time per row");
     writeln!(writer, "{}", header(estimate.others).join(","))?;
@@ -256,7 +257,8 @@ fn pose_numbers(pose: Pose) -> [f64; 3] {
     [pose.x, pose.y, pose.theta]
 }
 
-/// One line of the file with the number of other bodies, which says where the columns after them stand.
+/// One line of the file with the number of other bodies, which says where the columns after them
+/// stand.
 struct RowReader<'r, 't> {
     row: &'r Row<'t>,
     others: usize,

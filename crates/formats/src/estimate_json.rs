@@ -19,7 +19,8 @@ pub struct Pace {
 /// the keys `particles` and `missed` come after them.
 ///
 /// # Panics
-/// If the row has not one contact probability per fixel and other finger and other finger of `setup`.
+/// If the row has not one contact probability per fixel and other finger and other finger of
+/// `setup`.
 #[must_use]
 pub fn estimate_json(time: f64, row: &EstimateRow, setup: &Setup, pace: Option<Pace>) -> String {
     let columns = EstimateColumns {

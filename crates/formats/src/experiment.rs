@@ -23,7 +23,8 @@ impl Experiment {
     /// The four together.
     ///
     /// # Errors
-    /// The log has other fingers than the scene, or more sensors than the scene has bodies for them.
+    /// The log has other fingers than the scene, or more sensors than the scene has bodies for
+    /// them.
     pub fn new(
         setup: Setup,
         log: Log,

@@ -24,8 +24,8 @@ pub struct McapRecorder<W: Write + Seek> {
 }
 
 impl<W: Write> CsvRecorder<W> {
-    /// Writes the header of a log of `scene` with forces, covariances, and a column for each tactile
-    /// sensor that its bodies may have.
+    /// Writes the header of a log of `scene` with forces, covariances, and a column for each
+    /// tactile sensor that its bodies may have.
     ///
     /// # Errors
     /// Those of `writer`.

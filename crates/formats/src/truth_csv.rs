@@ -31,8 +31,8 @@ pub struct Truth {
     /// Size of the pusher's force, mean over the interval that ends at the row (N); empty where the
     /// file has none.
     pub pusher_force: Vec<f64>,
-    /// Normal force of each fixel, then of each other finger of a hand, a column per body, mean over
-    /// the interval that ends at the row (N).
+    /// Normal force of each fixel, then of each other finger of a hand, a column per body, mean
+    /// over the interval that ends at the row (N).
     pub fixel_forces: Vec<Vec<f64>>,
 }
 

@@ -5,8 +5,8 @@ use std::sync::{Mutex, PoisonError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use stickslip::diagnosis::{Finding, Severity, Subject};
-use stickslip::{Estimate, PoseCovariance, Row, RowError, TrackerOptions};
-use stickslip_dynamics::Pose;
+use stickslip::{Estimate, Plan, PlanError, PoseCovariance, Row, RowError, TrackerOptions};
+use stickslip_dynamics::{Body, Pose};
 use stickslip_evaluation::LearningFriction;
 use stickslip_formats::estimate_columns;
 
@@ -145,6 +145,48 @@ impl Tracker {
     /// The particles after the latest row, by the names of columns; none before the first pose.
     fn particles<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         to_dict(py, self.with(py, |state| state.particles()))
+    }
+
+    /// Probabilities of how a plan ends: poses (T + 1) of each finger, `h` seconds apart.
+    fn outcomes<'py>(
+        &self,
+        py: Python<'py>,
+        fingers: Vec<Vec<Numbers>>,
+        h: f64,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let poses = |places: &Vec<Numbers>| {
+            let places = places.iter();
+            places
+                .map(|[x, y, theta]| Pose::new(*x, *y, *theta))
+                .collect()
+        };
+        let fingers = fingers.iter().map(poses).collect();
+        let plan = Plan { h, fingers };
+        let ends = self.with(py, |state| state.tracker.outcomes(&plan));
+        let ends = ends.map_err(|error: PlanError| refused(error))?;
+        let dict = PyDict::new(py);
+        for (name, number) in [
+            ("held", ends.held),
+            ("jammed", ends.jammed),
+            ("resting", ends.resting),
+            ("moving", ends.moving),
+            ("lost", ends.lost),
+            ("x", ends.pose.x),
+            ("y", ends.pose.y),
+            ("theta", ends.pose.theta),
+            ("std_x", ends.spread.x),
+            ("std_y", ends.spread.y),
+            ("std_theta", ends.spread.theta),
+            ("unsolved", ends.unsolved),
+        ] {
+            dict.set_item(name, number)?;
+        }
+        let contacts = ends.contacts.iter().map(|set| {
+            let bodies = set.bodies.iter().map(Body::to_string);
+            (bodies.collect::<Vec<String>>(), set.probability)
+        });
+        dict.set_item("contacts", contacts.collect::<Vec<_>>())?;
+        Ok(dict)
     }
 
     /// A tracker that goes on by itself.

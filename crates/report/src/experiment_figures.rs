@@ -1,6 +1,6 @@
 //! The figures of one experiment: [`ReportedExperiment::figures`].
 
-use stickslip::dynamics::Pose;
+use stickslip::dynamics::{Body as Other, Pose};
 use stickslip_evaluation::LearnedParameter;
 
 use crate::axis::Scale;
@@ -208,8 +208,8 @@ impl ReportedExperiment<'_> {
         }
     }
 
-    /// Contacts against time, a panel per body: of the pusher, each fixel, then each other finger. `None` where
-    /// nothing is known of any contact.
+    /// Contacts against time, a panel per body: of the pusher, each fixel, then each other finger.
+    /// `None` where nothing is known of any contact.
     #[must_use]
     pub fn contact_timeline(&self) -> Option<TimeFigure> {
         let time = &self.log.time;
@@ -391,10 +391,11 @@ impl ReportedExperiment<'_> {
 #[must_use]
 pub fn body_name(body: usize, fixels: usize) -> String {
     match body {
-        0 => "pusher".to_owned(),
-        _ if body > fixels => format!("finger {}", body - fixels),
-        _ => format!("fixel {body}"),
+        0 => Other::Finger(0),
+        _ if body > fixels => Other::Finger(body - fixels),
+        _ => Other::Fixel(body - 1),
     }
+    .to_string()
 }
 
 /// Number of the tactile sensor of a body (see [`body_name`]) in the log.

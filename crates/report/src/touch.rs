@@ -62,9 +62,9 @@ impl<'a> TouchRule<'a> {
         self.scene.fixels.len() + self.scene.pusher.fingers.len()
     }
 
-    /// Returns true if the object at a pose touches the pusher (0), a fixel (from 1 on), or another
-    /// finger (after the fixels). `fingers` are the poses of the pusher and of the other fingers;
-    /// each may be off the table.
+    /// Returns true if the object at a pose touches a body. The pusher is body 0. Fixels
+    /// follow, then other fingers. `fingers` has the poses of the pusher and of the other fingers,
+    /// where they are on the table.
     pub fn touches(&self, object: Pose, fingers: &[Option<Pose>], body: usize) -> bool {
         let Scene { fixels, pusher, .. } = self.scene;
         if (1..=fixels.len()).contains(&body) {

@@ -104,7 +104,14 @@ fn a_jaw_closes_until_its_fingers_share_the_stall_force() {
     assert!((grasp.fingers[0].pose.x + 0.030).abs() < 1e-9);
     assert!((grasp.fingers[1].pose.x - 0.030).abs() < 1e-9);
     assert!((grasp.work.solution(0).pusher_yield - 0.02).abs() < 1e-12);
-    assert!((grasp.force(0) - 4.0).abs() < 1e-6 && (grasp.force(1) - 4.0).abs() < 1e-6);
+    // the support can take a difference of the two
+    let (forces, object) = (
+        [grasp.force(0), grasp.force(1)],
+        &grasp.dynamics.scene().object,
+    );
+    let sliding = grasp.dynamics.scene().nominal.mu_s * object.mass * 9.81;
+    assert!((forces[0] + forces[1] - 8.0).abs() < 1e-6, "{forces:?}");
+    assert!((forces[0] - forces[1]).abs() < sliding, "{forces:?}");
 }
 
 #[test]

@@ -63,8 +63,8 @@ fn advance(
     worst
 }
 
-/// Contacts of the first particle with the pusher and with each other body in the `last` substep to a
-/// row: 1 or 0 each. A row that no step leads to touches what the row `before` did.
+/// Contacts of the first particle with the pusher and with each other body in the `last` substep to
+/// a row: 1 or 0 each. A row that no step leads to touches what the row `before` did.
 pub(super) fn touch<const W: usize>(
     setup: &Setup,
     work: &StepWork<W>,

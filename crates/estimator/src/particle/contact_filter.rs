@@ -3,13 +3,18 @@
 
 use std::num::NonZero;
 
-use stickslip_dynamics::Pose;
-use stickslip_filter::{ParticleFilter, Resampling, Settings, StepReport, WeightUpdate};
+use stickslip_dynamics::{Pose, StepInput};
+use stickslip_filter::{
+    BLOCK, Draw, Model, ParticleFilter, Purpose, Resampling, Settings, StepReport, Streams,
+    WeightUpdate,
+};
 
 use crate::covariance::PoseCovariance;
 use crate::error::RunError;
 use crate::estimate::EstimateRow;
 use crate::filter_model::FilterModel;
+use crate::outcomes::{End, Outcomes};
+use crate::particle::estimate::end::end as end_of;
 use crate::particle::estimate::mode_finder::ModeFinder;
 use crate::particle::estimate::summary::summarise;
 use crate::particle::estimate::sums::Reference;
@@ -374,6 +379,42 @@ impl<'o> ContactFilter<'o> {
         let weighed = (self.filter.particles(), self.filter.weights());
         let driven = self.plan.driven;
         ParticleView::new(weighed, self.filter.model(), &self.observation, driven)
+    }
+
+    /// Moves copies of the particles over the steps of a plan, and returns how they end. The random
+    /// numbers are those that the next rows would use.
+    pub fn outcomes(&self, steps: &[Vec<StepInput>]) -> Outcomes {
+        let model = self.filter.model();
+        let transition = model.transition();
+        let streams = Streams::new(self.filter.settings().seed).of(Purpose::Propagate);
+        let mut noise = self.noise;
+        let plans = steps.iter().enumerate().map(|(row, substeps)| {
+            let mut plan = StepPlan {
+                substeps: substeps.clone(),
+                driven: true,
+                intended: true,
+                // what moves in the last step moves by itself
+                undisturbed: row + 1 == steps.len(),
+                slot: self.plan.slot,
+                ..StepPlan::none(self.reference)
+            };
+            plan.noise_age = noise.age(plan.duration());
+            (plan, streams.at(self.filter.steps() + 1 + row as u64))
+        });
+        let plans: Vec<(StepPlan, Draw)> = plans.collect();
+        let touching = plans.last().map_or(0.0, |(plan, _)| plan.touching);
+        let mut particles = self.filter.particles().clone();
+        let mut ends = vec![End::default(); particles.len()];
+        particles.advance(None, ends.chunks_mut(BLOCK), |block, ends| {
+            let mut scratch = model.scratch();
+            for (plan, draw) in &plans {
+                scratch.propagate(transition, plan, *draw, block);
+            }
+            for (i, end) in ends.iter_mut().enumerate() {
+                *end = end_of(&scratch, i, touching);
+            }
+        });
+        Outcomes::of(&ends, self.filter.weights().weights())
     }
 
     /// Number of rows at which no particle explained the camera pose, so that all were

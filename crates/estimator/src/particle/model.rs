@@ -65,6 +65,11 @@ impl<'o> ContactModel<'o> {
         }
     }
 
+    /// Returns the part that moves the particles.
+    pub fn transition(&self) -> &Transition<'o> {
+        &self.transition
+    }
+
     /// The model with an `observer` that is shown every step solved.
     #[must_use]
     pub fn observed(mut self, observer: Option<&'o dyn Observer>) -> Self {

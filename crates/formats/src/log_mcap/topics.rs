@@ -393,7 +393,7 @@ mod tests {
             (&["object"][..], "`object` has no `=`; write KEY=TOPIC"),
             (
                 &["objekt=/a"],
-                "`objekt` is none of the keys object, pusher, wrench, fixel_1, fixel_2, ...; the nearest is object",
+                "`objekt` is none of the keys object, pusher, finger_1, ..., wrench, fixel_1, fixel_2, ...; the nearest is object",
             ),
             (&["fixel_01=/a"], "the nearest is fixel_1"),
             (

@@ -207,7 +207,7 @@ fn data_read_back_to_the_numbers_they_were() {
                 < 0.51
         );
     }
-    assert!(data["pusherPose"]["x"][3].is_null() && data["pusherPose"]["x"][4].is_number());
+    assert!(data["fingerPoses"][0]["x"][3].is_null() && data["fingerPoses"][0]["x"][4].is_number());
     assert_eq!(data["dark"], serde_json::json!([[54, 90]]));
     assert_eq!(
         (&data["hidden"][53], &data["hidden"][54]),

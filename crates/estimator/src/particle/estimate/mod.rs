@@ -1,5 +1,7 @@
 //! Reported values: sums over the particles, the published pose, peaks of the belief.
 
+pub(crate) mod closure;
+pub(crate) mod end;
 pub(crate) mod geometric_median;
 pub(crate) mod group;
 pub(crate) mod mode_finder;

@@ -215,7 +215,7 @@ impl Propagation {
                 particles.friction.fields_mut(),
             );
             // a standing pusher goes on through no jam: what it yielded may be the bodies' compliance
-            if paper || !plan.rests_unseen() {
+            if !plan.intended && (paper || !plan.rests_unseen()) {
                 particles.limit_pusher_lag(most_lag);
             }
             load_columns(
@@ -290,7 +290,7 @@ impl Propagation {
             .enumerate()
             .take(block.len().div_ceil(LANES))
         {
-            let disturbed = !self.untouched[chunk];
+            let disturbed = !(self.untouched[chunk] | Mask::splat(plan.undisturbed));
             let factor = match columns.model() {
                 FilterModel::Robust => Self::force_factor(transition, plan, block, chunk),
                 FilterModel::Paper => Lanes::splat(1.0),

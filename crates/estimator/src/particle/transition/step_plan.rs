@@ -74,6 +74,11 @@ pub struct StepPlan {
     /// Motion in which the pusher would have gone on, if it stops at the end of the step (robust
     /// model). Only its twists count.
     pub stopped: Option<PusherMotion>,
+    /// True if the pusher's poses are intended, not measured: a drive that yields stays behind them
+    /// as far as it does.
+    pub intended: bool,
+    /// True if neither random force nor a random step of the unknowns disturbs this step.
+    pub undisturbed: bool,
     /// Gap up to which bodies touch (m), (22).
     pub touching: f64,
     /// History slot for the pose at the end of the step, where past poses are kept.
@@ -121,6 +126,8 @@ impl StepPlan {
             unseen_pusher: None,
             pusher_is_back: false,
             stopped: None,
+            intended: false,
+            undisturbed: false,
             touching: TOUCHING,
             slot: 0,
             seen: Observation::default(),

@@ -189,7 +189,7 @@ impl Propagation {
         );
         // drawn in every row of a fast pusher, its offset would be the largest of many when it
         // comes near
-        if plan.noise_age == 0 {
+        if plan.noise_age == 0 && !plan.undisturbed {
             self.step_unknowns(transition, plan, draw, block);
         }
         on_widest(
