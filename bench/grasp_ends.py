@@ -2,6 +2,7 @@
 
     python3 bench/grasp_ends.py make FIRST LAST OUT
     python3 bench/grasp_ends.py score FOLDER [FOLDER ...]
+    python3 bench/grasp_ends.py choose FIRST LAST
 
 `make` simulates closings of a jaw on the testbed: the scenes of `mujoco_grasps.py --jaw` (needs mujoco and numpy), by
 `stickslip.simulate`. `score` takes them and those of `mujoco_grasps.py --jaw` itself. The camera is off from just
@@ -12,6 +13,11 @@ would meet. Held means that both press and the object rests, 0.3 s later.
 Compared are the particles' probability, the yes or no of one simulation with the scene's values from the estimated pose
 (nominal), and the share of held grasps in the set (base rate). Brier score: mean square of probability minus outcome.
 Calibration error: mean distance of probability and share over ten bins of equal width, weighted by their counts.
+
+`choose` grasps the objects of these scenes on the testbed. The camera sees the object for a second before the jaw
+comes. Then one closing is carried out: at a fixed angle through the measured centre (fixed); the one of 36 that the
+nominal simulation holds with its lines of contact nearest to the centre (nominal); or the one of the same 36 with the
+highest probability (`plan.grasp`). It prints the shares of grasps that hold.
 """
 
 import argparse
@@ -22,8 +28,10 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
+from mujoco_grasps import CAMERA_STD, START, draw_jaw, scene_text
 
 import stickslip
+from stickslip import plan
 
 BEFORE = (2.0, 0.5)  # s
 AFTER = 0.3  # s
@@ -31,24 +39,27 @@ TOUCH = 0.05  # N
 STILL = (1e-3, 0.03)  # m/s, rad/s
 
 
+def with_start(grasp, object_pose, pusher, finger, travel):
+    """Text of a scene in which both fingers close by `travel` (m) from their poses, 0.5 s after the start."""
+    closes = 0.5 + travel / grasp.speed
+    knots = [[0, 0], [0.5, 0], [0.5, grasp.speed], [closes, grasp.speed], [closes, 0.0]]
+    text = scene_text(grasp, False).replace("\n[[finger]]\n", f"\n[[finger]]\nstart = {list(map(float, finger))}\n")
+    return f"""{text}
+[start]
+object = {list(map(float, object_pose))}
+pusher = {list(map(float, pusher))}
+direction = {float(pusher[2])}
+speed = {knots}
+duration = {closes + 1.0}
+"""
+
+
 def make(first, last, out):
     """Writes an experiment of the testbed for each seed whose object is touched."""
-    from mujoco_grasps import JAW_SECONDS, draw_jaw, scene_text
-
     for seed in range(first, last):
         grasp = draw_jaw(np.random.default_rng(seed), seed)
         (x, y, _), (other_x, other_y, _) = grasp.fingers
-        finger = f"start = [{other_x:.6f}, {other_y:.6f}, 0.0]\n"
-        knots = [[0, 0], [0.5, 0], [0.5, grasp.speed], [0.5 + grasp.travel / grasp.speed, grasp.speed]]
-        knots = [*knots, [knots[-1][0], 0.0]]
-        text = scene_text(grasp, False).replace("\n[[finger]]\n", "\n[[finger]]\n" + finger)
-        text += f"""
-[start]
-object = [0.0, {grasp.y:.6f}, {grasp.angle:.6f}]
-pusher = [{x:.6f}, {y:.6f}, 0.0]
-speed = {knots}
-duration = {JAW_SECONDS}
-"""
+        text = with_start(grasp, (START, grasp.y, grasp.angle), (x, y, 0), (other_x, other_y, 0), grasp.travel)
         folder = out / f"testbed-{grasp.shape}-{grasp.pusher}-{seed}"
         folder.mkdir(parents=True)
         (folder / "scene.toml").write_text(text)
@@ -56,6 +67,52 @@ duration = {JAW_SECONDS}
         result = stickslip.simulate(stickslip.load_scene(folder / "scene.toml"), seed=seed, friction=truth)
         (folder / "scene.toml").unlink()
         result.write(folder)
+
+
+def choose(first, last):
+    """Prints how many grasps hold by each way to choose."""
+    held = {"fixed": [], "nominal": [], "plan.grasp": []}
+    for seed in range(first, last):
+        draw = np.random.default_rng(seed)
+        grasp = draw_jaw(draw, seed)
+        place = (START, grasp.y, grasp.angle)
+        scene = stickslip.Scene(scene_text(grasp, False))
+        tracker = stickslip.Tracker(scene, seed=seed)
+        away = [(START - 0.2, 0, 0), (START + 0.2, 0, 0)]
+        for row in range(30):
+            seen = place + draw.normal(size=3) * CAMERA_STD
+            here = tracker.push(row / 30, object=seen, pusher=away[0], fingers=away[1:])
+        pose = (here["x"], here["y"], here["theta"])
+        angles, offsets = np.linspace(0, np.pi, 12, endpoint=False), [0.0, -0.3 * grasp.radius, 0.3 * grasp.radius]
+        closings = plan.jaw_closings(scene, pose, angles=angles, offsets=offsets, speed=grasp.speed)
+        single = stickslip.rollout(scene, np.tile(pose, (len(closings), 1)), closings)
+        chosen = {
+            "fixed": 0,
+            "nominal": int(np.flatnonzero([*nominal_holds(single), True])[0]) % len(closings),
+            "plan.grasp": plan.grasp(tracker, closings)[0],
+        }
+        for name, k in chosen.items():
+            path = closings[k]
+            travel = math.hypot(*(path[-1, :2] - path[0, :2]))
+            text = with_start(grasp, place, path[0, :3], path[0, 3:], travel)
+            truth = {"mu_s": grasp.mu_s, "mu_p": grasp.mu_p}
+            held[name].append(holds(stickslip.simulate(stickslip.Scene(text), seed=seed, friction=truth).truth, -1))
+    for name, answers in held.items():
+        print(f"{name}: {sum(answers)} of {len(answers)} grasps hold")
+
+
+def nominal_holds(single):
+    """True for each trajectory of a rollout whose drive yields in the end while the object rests."""
+    twist, lag = single["twist"][:, -1], np.hypot(*single["pusher_lag"].T)
+    return (lag > 1e-5) & (np.hypot(*twist[:, :2].T) < STILL[0]) & (np.abs(twist[:, 2]) < STILL[1])
+
+
+def holds(truth, row):
+    """True if both fingers press and the object rests in a row of the truth."""
+    press = min(truth["force_pusher"][row], truth["force_1"][row]) > TOUCH
+    return bool(
+        press and math.hypot(truth["vx"][row], truth["vy"][row]) < STILL[0] and abs(truth["omega"][row]) < STILL[1]
+    )
 
 
 def fingers_of(columns):
@@ -85,9 +142,7 @@ def predictions(folder):
     after = np.searchsorted(time, time[end] + AFTER)
     if after >= len(time):
         return
-    row = truth[after]
-    press = min(row["force_pusher"], row["force_1"]) > TOUCH
-    held = press and math.hypot(row["vx"], row["vy"]) < STILL[0] and abs(row["omega"]) < STILL[1]
+    held = holds(truth, after)
     tracker, rows, done = stickslip.Tracker(scene), list(stickslip.rows(log)), 0
     for before in BEFORE:
         now = int(np.searchsorted(time, time[end] - before))
@@ -97,12 +152,10 @@ def predictions(folder):
             tracker.push(**(rows[k] if k < touched else {**rows[k], "object": None}))
         done = now + 1
         times = np.arange(0.0, before + AFTER, 1 / 30)
-        plan = fingers[now] + times[:, None] * velocity
-        ends, here = tracker.outcomes(plan), tracker.estimate
-        single = stickslip.rollout(scene, [[here["x"], here["y"], here["theta"]]], plan)
-        speed, yields = single["twist"][0, -1], np.hypot(*single["pusher_lag"][0]) > 1e-5
-        nominal = yields and np.hypot(*speed[:2]) < STILL[0] and abs(speed[2]) < STILL[1]
-        yield before, ends["held"], float(nominal), float(held)
+        path = fingers[now] + times[:, None] * velocity
+        ends, here = tracker.outcomes(path), tracker.estimate
+        single = stickslip.rollout(scene, [[here["x"], here["y"], here["theta"]]], path)
+        yield before, ends["held"], float(nominal_holds(single)[0]), float(held)
 
 
 def calibration_error(chance, held):
@@ -139,10 +192,15 @@ def main():
     maker.add_argument("first", type=int)
     maker.add_argument("last", type=int)
     maker.add_argument("out", type=Path)
+    chooser = commands.add_parser("choose")
+    chooser.add_argument("first", type=int)
+    chooser.add_argument("last", type=int)
     commands.add_parser("score").add_argument("folders", type=Path, nargs="+")
     given = parser.parse_args()
     if given.command == "make":
         make(given.first, given.last, given.out)
+    elif given.command == "choose":
+        choose(given.first, given.last)
     else:
         score(given.folders)
 
