@@ -8,7 +8,7 @@
 `stickslip.simulate`. `score` takes them and those of `mujoco_grasps.py --jaw` itself. The camera is off from just
 before the first touch on. A tracker gets the rows up to 2 s and up to 0.5 s before the end, and predicts the end of a
 plan that closes on at the same speed (`Tracker.outcomes`). The end is where the fingers stop, stalled or because they
-would meet. Held means that both press and the object rests, 0.3 s later.
+would meet. Held means that both press and the object rests, 0.5 s later.
 
 Compared are the particles' probability, the yes or no of one simulation with the scene's values from the estimated pose
 (nominal), and the share of held grasps in the set (base rate). Brier score: mean square of probability minus outcome.
@@ -23,7 +23,6 @@ highest probability (`plan.grasp`). It prints the shares of grasps that hold.
 import argparse
 import json
 import math
-import sys
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -34,15 +33,16 @@ import stickslip
 from stickslip import plan
 
 BEFORE = (2.0, 0.5)  # s
-AFTER = 0.3  # s
+AFTER = 0.5  # s
+STOPS = 1e-3  # m: way of a finger to its last place at the end
 TOUCH = 0.05  # N
 STILL = (1e-3, 0.03)  # m/s, rad/s
 
 
 def with_start(grasp, object_pose, pusher, finger, travel):
     """Text of a scene in which both fingers close by `travel` (m) from their poses, 0.5 s after the start."""
-    closes = 0.5 + travel / grasp.speed
-    knots = [[0, 0], [0.5, 0], [0.5, grasp.speed], [closes, grasp.speed], [closes, 0.0]]
+    speed, closes = float(grasp.speed), float(0.5 + travel / grasp.speed)
+    knots = [[0.0, 0.0], [0.5, 0.0], [0.5, speed], [closes, speed], [closes, 0.0]]
     text = scene_text(grasp, False).replace("\n[[finger]]\n", f"\n[[finger]]\nstart = {list(map(float, finger))}\n")
     return f"""{text}
 [start]
@@ -61,12 +61,8 @@ def make(first, last, out):
         (x, y, _), (other_x, other_y, _) = grasp.fingers
         text = with_start(grasp, (START, grasp.y, grasp.angle), (x, y, 0), (other_x, other_y, 0), grasp.travel)
         folder = out / f"testbed-{grasp.shape}-{grasp.pusher}-{seed}"
-        folder.mkdir(parents=True)
-        (folder / "scene.toml").write_text(text)
         truth = {"mu_s": grasp.mu_s, "mu_p": grasp.mu_p}
-        result = stickslip.simulate(stickslip.load_scene(folder / "scene.toml"), seed=seed, friction=truth)
-        (folder / "scene.toml").unlink()
-        result.write(folder)
+        stickslip.simulate(stickslip.Scene(text), seed=seed, friction=truth).write(folder)
 
 
 def choose(first, last):
@@ -121,24 +117,16 @@ def fingers_of(columns):
     return np.column_stack([columns[name] for name in names])
 
 
-def end_of(fingers, time, touched):
-    """Row of the end, and the fingers' velocity while they close (6,)."""
-    closing = slice(touched - 15, touched)
-    velocity = (fingers[touched] - fingers[touched - 15]) / (time[touched] - time[closing.start])
-    moved = np.hypot(*(fingers[5:, :2] - fingers[:-5, :2]).T) / (time[5:] - time[:-5])
-    moving = np.flatnonzero(moved > 0.3 * np.hypot(*velocity[:2]))
-    return int(moving[-1]) + 5, velocity
-
-
 def predictions(folder):
     """Yields (s before the end, probability, nominal's answer, held or not) for an experiment."""
     scene, log = stickslip.load_scene(folder / "scene.toml"), stickslip.load_log(folder / "log.csv")
     truth = np.genfromtxt(folder / "truth.csv", delimiter=",", names=True)
     touched = json.loads((folder / "truth.json").read_text())["occlude_from"]
     time, fingers = log["time"], fingers_of(log)
-    if touched is None or touched < 15:
-        return
-    end, velocity = end_of(fingers, time, touched)
+    seed = int(folder.name.rsplit("-", 1)[1])
+    speed = draw_jaw(np.random.default_rng(seed), seed).speed  # as commanded
+    velocity = np.array([speed, 0, 0, -speed, 0, 0])
+    end = int(np.flatnonzero(np.abs(fingers[:, 0] - fingers[-1, 0]) > STOPS)[-1]) + 1
     after = np.searchsorted(time, time[end] + AFTER)
     if after >= len(time):
         return
@@ -146,7 +134,7 @@ def predictions(folder):
     tracker, rows, done = stickslip.Tracker(scene), list(stickslip.rows(log)), 0
     for before in BEFORE:
         now = int(np.searchsorted(time, time[end] - before))
-        if now <= touched - 15:
+        if now < touched:
             continue
         for k in range(done, now + 1):
             tracker.push(**(rows[k] if k < touched else {**rows[k], "object": None}))
@@ -173,7 +161,8 @@ def score(folders):
     for before in BEFORE:
         rows = np.array([answer for answer in found if answer[0] == before])
         if not len(rows):
-            sys.exit(f"no grasp is {before} s from its end after the first touch")
+            print(f"{before} s before the end: no grasp was touched yet")
+            continue
         chance, nominal, held = rows.T[1:]
         error, groups = calibration_error(chance, held)
         brier = [np.mean((guess - held) ** 2) for guess in (chance, nominal, np.full(len(held), held.mean()))]
