@@ -1,6 +1,7 @@
 //! How a particle moves over one step.
 
 pub(crate) mod contact_flags;
+pub(crate) mod involved;
 mod lags;
 pub(crate) mod noise_clock;
 pub(crate) mod propagation;

@@ -11,6 +11,7 @@ use crate::filter_model::FilterModel;
 use crate::particle::set::chunk::{Column, FlagsMut, LANES, load_chunk, store_chunk};
 use crate::particle::set::columns::Columns;
 use crate::particle::set::observer::{Observer, SolvedStep};
+use crate::particle::transition::involved::Involved;
 use crate::particle::transition::noise_clock::{NOISE_STEP, sharing};
 use crate::particle::transition::step_plan::{ParameterNoise, StepPlan};
 use crate::particle::unknown::friction::note_identified;
@@ -52,6 +53,8 @@ pub struct Propagation {
     /// Turn of the pusher; empty if it is known (robust model).
     pub(crate) pusher_turn: Vec<Column>,
     pub(crate) fixel_offsets: Vec<[Column; 2]>,
+    /// Ways by which the fingers yielded since the beginning of a plan; empty without one.
+    pub(crate) yielded: Vec<[Column; 2]>,
     /// Image of the scene's feet of each particle; empty if they are known (robust model).
     pub(crate) supports: Vec<Support<Column>>,
     /// Square of the pusher's lag before the step (m²) (robust model).
@@ -67,40 +70,6 @@ pub struct Propagation {
     pub(crate) level: Level,
 }
 
-/// Parts of a step that were involved (Φ) and its outcome, by lane of a chunk.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Involved {
-    pub(crate) pusher: Mask<LANES>,
-    pub(crate) fixel: Mask<LANES>,
-    moved: Mask<LANES>,
-    unsolved: Mask<LANES>,
-    failed: Mask<LANES>,
-}
-
-impl Involved {
-    const NOTHING: Self = {
-        let no = Mask::splat(false);
-        Self {
-            pusher: no,
-            fixel: no,
-            moved: no,
-            unsolved: no,
-            failed: no,
-        }
-    };
-
-    /// Φ: the parameters that took part (docs/method.md (21); paper Table I).
-    #[inline(always)]
-    fn phi(&self) -> Friction<Mask<LANES>> {
-        Friction {
-            mu_s: self.moved,
-            mu_p: self.pusher,
-            mu_f: self.fixel,
-            d_tri: self.moved,
-        }
-    }
-}
-
 impl Default for Propagation {
     fn default() -> Self {
         Self {
@@ -110,6 +79,7 @@ impl Default for Propagation {
             pusher_offsets: Vec::new(),
             pusher_turn: Vec::new(),
             fixel_offsets: Vec::new(),
+            yielded: Vec::new(),
             supports: Vec::new(),
             lag_before: [Column::ZERO; CHUNKS],
             support: [[Column::ZERO; 2]; CHUNKS],
@@ -141,6 +111,9 @@ impl Propagation {
         if model == FilterModel::Robust {
             self.draw_unknowns(transition, plan, draw, block);
         }
+        if plan.intended {
+            self.stand_back(transition, chunks);
+        }
         self.support.fill([Column::ZERO; 2]);
         let of_force = draw.before(plan.noise_age);
         for (part, input) in (0..).zip(&plan.substeps) {
@@ -154,12 +127,12 @@ impl Propagation {
                 observer.before_step(input, &self.particles[..chunks]);
             }
             match model {
-                FilterModel::Paper => transition.dynamics.step_block(
+                FilterModel::Paper if !plan.intended => transition.dynamics.step_block(
                     input,
                     &mut self.particles[..chunks],
                     &mut self.work,
                 ),
-                FilterModel::Robust => self.step_with_offsets(transition, input, chunks),
+                _ => self.step_with_offsets(transition, input, chunks),
             }
             on_widest(
                 level,
@@ -172,6 +145,9 @@ impl Propagation {
             if let Some(observer) = transition.observer.filter(|o| o.wants_steps()) {
                 self.show(observer, block.len());
             }
+        }
+        if plan.intended {
+            self.note_yields(transition, chunks);
         }
         on_widest(
             level,
