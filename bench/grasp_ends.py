@@ -8,11 +8,13 @@
 `stickslip.simulate`. `score` takes them and those of `mujoco_grasps.py --jaw` itself. The camera is off from just
 before the first touch on. A tracker gets the rows up to 2 s and up to 0.5 s before the end, and predicts the end of a
 plan that closes on at the same speed (`Tracker.outcomes`). The end is where the fingers stop, stalled or because they
-would meet. Held means that both press and the object rests, 0.5 s later.
+would meet. Held means that 0.5 s later both press, the object rests, and the drive is stalled.
 
-Compared are the particles' probability, the yes or no of one simulation with the scene's values from the estimated pose
-(nominal), and the share of held grasps in the set (base rate). Brier score: mean square of probability minus outcome.
-Calibration error: mean distance of probability and share over ten bins of equal width, weighted by their counts.
+Compared are the particles' probability (`held` plus `jammed`), the yes or no of one simulation with the scene's values
+from the estimated pose (nominal), and the share of held grasps in the set (base rate). Brier score: mean square of
+probability minus outcome.
+Calibration error: mean distance of probability and share over ten bins of equal
+width, weighted by their counts.
 
 `choose` grasps the objects of these scenes on the testbed. The camera sees the object for a second before the jaw
 comes. Then one closing is carried out: at a fixed angle through the measured centre (fixed); the one of 36 that the
@@ -124,26 +126,25 @@ def predictions(folder):
     touched = json.loads((folder / "truth.json").read_text())["occlude_from"]
     time, fingers = log["time"], fingers_of(log)
     seed = int(folder.name.rsplit("-", 1)[1])
-    speed = draw_jaw(np.random.default_rng(seed), seed).speed  # as commanded
-    velocity = np.array([speed, 0, 0, -speed, 0, 0])
+    grasp = draw_jaw(np.random.default_rng(seed), seed)
     end = int(np.flatnonzero(np.abs(fingers[:, 0] - fingers[-1, 0]) > STOPS)[-1]) + 1
     after = np.searchsorted(time, time[end] + AFTER)
     if after >= len(time):
         return
-    held = holds(truth, after)
+    goal = grasp.fingers[0][0] + grasp.travel  # of the pusher, as commanded
+    held = holds(truth, after) and fingers[after, 0] < goal - STOPS
     tracker, rows, done = stickslip.Tracker(scene), list(stickslip.rows(log)), 0
     for before in BEFORE:
         now = int(np.searchsorted(time, time[end] - before))
-        if now < touched:
-            continue
         for k in range(done, now + 1):
             tracker.push(**(rows[k] if k < touched else {**rows[k], "object": None}))
         done = now + 1
-        times = np.arange(0.0, before + AFTER, 1 / 30)
-        path = fingers[now] + times[:, None] * velocity
+        # as commanded: the jaw begins to close after half a second
+        way = np.clip(grasp.speed * (time[now : after + 1] - 0.5), 0.0, grasp.travel)
+        path = fingers[now] + (way - way[0])[:, None] * np.array([1, 0, 0, -1, 0, 0])
         ends, here = tracker.outcomes(path), tracker.estimate
         single = stickslip.rollout(scene, [[here["x"], here["y"], here["theta"]]], path)
-        yield before, ends["held"], float(nominal_holds(single)[0]), float(held)
+        yield before, ends["held"] + ends["jammed"], float(nominal_holds(single)[0]), float(held)
 
 
 def calibration_error(chance, held):
@@ -160,9 +161,6 @@ def score(folders):
         found = [answer for answers in pool.map(lambda one: list(predictions(one)), experiments) for answer in answers]
     for before in BEFORE:
         rows = np.array([answer for answer in found if answer[0] == before])
-        if not len(rows):
-            print(f"{before} s before the end: no grasp was touched yet")
-            continue
         chance, nominal, held = rows.T[1:]
         error, groups = calibration_error(chance, held)
         brier = [np.mean((guess - held) ** 2) for guess in (chance, nominal, np.full(len(held), held.mean()))]

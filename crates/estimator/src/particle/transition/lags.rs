@@ -19,8 +19,8 @@ impl Propagation {
         }
     }
 
-    /// Puts each finger where it stands: behind its place in the plan by what it has yielded so far.
-    /// From its place in the plan it would be deep in a body that stopped it.
+    /// Puts each finger where it stands: behind its place in the plan by what it has yielded so
+    /// far. From its place in the plan it would be deep in a body that stopped it.
     pub(crate) fn stand_back(&mut self, transition: &Transition<'_>, chunks: usize) {
         let Transition { columns, .. } = transition;
         let fingers = chunks * columns.fingers();
