@@ -7,7 +7,6 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 use stickslip::diagnosis::refused;
-use stickslip::dynamics::Scene;
 use stickslip::{Log, Occlusion, Setup};
 use stickslip_formats::{
     BagOptions, Experiment, Truth, TruthFacts, read_log, read_mounts, read_scene, read_truth_csv,
@@ -17,20 +16,8 @@ use stickslip_formats::{
 use crate::arg_values::ForceArgs;
 use crate::failure::hinted;
 use crate::log_files::{LogFiles, log_path};
-use crate::output::{counted, talk};
+use crate::output::talk;
 use crate::verdict::Verdict;
-
-/// Refuses a scene with a hand of several fingers for a result that shows one pusher.
-pub fn one_pusher(scene: &Scene, what: &str) -> Result<()> {
-    let fingers = counted(scene.pusher.fingers.len() as u64 - 1, "[[finger]] table");
-    match scene.pusher.fingers.len() {
-        1 => Ok(()),
-        _ => Err(hinted(
-            format!("{what} shows one pusher, and the scene has {fingers}"),
-            "leave it out: estimates and comparisons as text know hands",
-        )),
-    }
-}
 
 /// The texts of an experiment's files.
 #[derive(Clone, Copy, Debug)]

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Result;
 use rayon::prelude::*;
+use stickslip::dynamics::Scene;
 use stickslip_evaluation::Reference;
 use stickslip_formats::{BagOptions, Experiment, FrameList, write_frames};
 use stickslip_rendering::{
@@ -17,7 +18,7 @@ use stickslip_vision::{BoardOnTable, write_board, write_tags};
 use super::args::RenderArgs;
 use super::setup::CameraSetup;
 use crate::arg_values::Rows;
-use crate::experiment::{one_pusher, read_folder, reference_name};
+use crate::experiment::{read_folder, reference_name};
 use crate::failure::hinted;
 use crate::files::{make_folder, write_out};
 use crate::log_files::log_path;
@@ -33,7 +34,7 @@ pub fn render(args: &RenderArgs) -> Result<Verdict> {
         &BagOptions::default(),
     )?;
     let scene = &experiment.setup.scene;
-    one_pusher(scene, "a video")?;
+    refuse_hand(scene)?;
     let recorded = recorded(args, &experiment)?;
     let optics = Optics {
         blur: args.blur,
@@ -82,6 +83,20 @@ pub fn render(args: &RenderArgs) -> Result<Verdict> {
 }
 
 /// Poses of object and pusher: the object's by the truth, else by the log.
+/// A video shows one pusher.
+fn refuse_hand(scene: &Scene) -> Result<()> {
+    match scene.pusher.fingers.len() {
+        1 => Ok(()),
+        fingers => Err(hinted(
+            format!(
+                "a video shows one pusher, and the scene has {}",
+                counted(fingers as u64 - 1, "[[finger]] table")
+            ),
+            "`filter --report` draws hands",
+        )),
+    }
+}
+
 fn recorded(args: &RenderArgs, experiment: &Experiment) -> Result<RecordedMotion> {
     let reference = Reference::of(experiment).pose;
     let unknown = reference.iter().position(Option::is_none);
