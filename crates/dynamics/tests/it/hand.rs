@@ -170,7 +170,7 @@ fn random_grasp(rng: &mut Rng) -> Grasp {
         d_tri: rng.within(0.3, 0.9) * size,
     };
     let weight = scene.nominal.mu_s * scene.object.mass * scene.gravity;
-    scene.pusher.stall_force = Some(weight * 30_f64.powf(rng.within(-0.2, 1.0)));
+    scene.pusher.stall_force = Some(weight * libm::pow(30_f64, rng.within(-0.2, 1.0)));
     let count = 2 + rng.below(3);
     let first = rng.within(0.0, std::f64::consts::TAU);
     let speed = rng.within(0.005, 0.15);
