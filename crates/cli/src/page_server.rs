@@ -1,10 +1,13 @@
 //! A server on the loopback address, for one page, its WebSocket and what it asks: [`PageServer`].
 
+mod head;
+mod notices;
+
 use std::collections::BTreeMap;
-use std::io::{self, BufRead, BufReader, Read, Write, copy, sink};
+use std::io::{self, BufReader, Read, Write, copy, sink};
 use std::net::{Ipv4Addr, Shutdown, TcpListener, TcpStream};
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -17,9 +20,8 @@ use tungstenite::{Message, WebSocket, accept_hdr_with_config};
 
 use crate::failure::hinted;
 use crate::output::{said, talk};
-
-/// Least time between two rows that are shown: 30 a second are seen.
-const PERIOD: Duration = Duration::from_millis(33);
+use head::Head;
+pub use notices::{Notices, lock};
 
 /// Most pages that are shown messages at a time.
 const MOST_VIEWERS: usize = 8;
@@ -36,17 +38,11 @@ const PATIENCE_WITH_FILES: Duration = Duration::from_secs(60);
 /// Age of a row from which on a new page is given it.
 const OLD: Duration = Duration::from_secs(2);
 
-/// Time between checks of a page to which nothing is sent: it may be gone.
-const LOOK: Duration = Duration::from_secs(1);
-
 /// Most messages that are taken from a page at a time; it has nothing to say.
 const MOST_MESSAGES: usize = 64;
 
 /// Longest message of a page (bytes).
 const LONGEST_MESSAGE: usize = 4 << 10;
-
-/// Longest head of a request (bytes).
-const LONGEST_HEAD: usize = 16 << 10;
 
 /// Most that a page sends at once (MB).
 pub const LARGEST_BODY_MB: u64 = 64;
@@ -59,13 +55,6 @@ pub struct PageServer {
     shared: Arc<Shared>,
     /// The page's address, token included.
     address: String,
-}
-
-/// The newest message to all pages.
-#[derive(Default)]
-pub struct Notices {
-    newest: Mutex<Newest>,
-    changed: Condvar,
 }
 
 /// State that the threads of the connections share.
@@ -86,14 +75,6 @@ struct Shared {
 struct Strangers {
     latest: u64,
     streams: BTreeMap<u64, TcpStream>,
-}
-
-/// The newest message, its number, and when it came.
-#[derive(Default)]
-struct Newest {
-    number: u64,
-    text: Arc<str>,
-    came: Option<Instant>,
 }
 
 /// A client's stream, on which everything ends at a deadline.
@@ -149,46 +130,11 @@ pub fn serve(
     Ok(server)
 }
 
-impl Notices {
-    /// Returns true if a message should be shown now: the last one was some time ago. It is shown
-    /// without a page, too, so that one that is opened while the source is silent has something to
-    /// show.
-    pub fn wants(&self) -> bool {
-        let came = lock(&self.newest).came;
-        came.is_none_or(|came| came.elapsed() >= PERIOD)
-    }
-
-    /// Shows a message to all pages that are open; those that are busy drop the one before.
-    pub fn show(&self, text: String) {
-        let mut newest = lock(&self.newest);
-        newest.number += 1;
-        newest.text = text.into();
-        newest.came = Some(Instant::now());
-        self.changed.notify_all();
-    }
-
-    /// The newest message once it is another than that of number `seen`, or after a while; its
-    /// number, and its age.
-    fn after(&self, seen: u64) -> (u64, Arc<str>, Duration) {
-        let waited = self
-            .changed
-            .wait_timeout_while(lock(&self.newest), LOOK, |newest| newest.number == seen);
-        let (newest, _) = waited.unwrap_or_else(PoisonError::into_inner);
-        let age = newest.came.map_or(Duration::ZERO, |came| came.elapsed());
-        (newest.number, newest.text.clone(), age)
-    }
-}
-
 /// 128 random bits in hexadecimal digits.
 fn token() -> io::Result<String> {
     let mut bytes = [0_u8; 16];
     getrandom::fill(&mut bytes).map_err(io::Error::other)?;
     Ok(bytes.iter().map(|byte| format!("{byte:02x}")).collect())
-}
-
-/// Locks what no panic leaves half done.
-pub fn lock<T>(shared: &Mutex<T>) -> MutexGuard<'_, T> {
-    shared.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Serves one connection on a thread of its own.
@@ -285,7 +231,7 @@ impl Shared {
 
     fn serve_request(&self, stream: Patient, number: u64) -> io::Result<()> {
         let mut reader = BufReader::new(stream);
-        let head = Head::read(&mut reader)?;
+        let head = Head::read(&mut reader);
         let known = self.allows(head.field("host"), head.query());
         if known {
             self.is_no_stranger(number);
@@ -404,46 +350,6 @@ impl Shared {
             }
         }
         Ok(())
-    }
-}
-
-/// Head of a request: its first line and its fields.
-struct Head(Vec<String>);
-
-impl Head {
-    fn read(reader: &mut BufReader<Patient>) -> io::Result<Self> {
-        let lines = reader.take(LONGEST_HEAD as u64).lines();
-        let lines = lines
-            .map_while(Result::ok)
-            .take_while(|line| !line.is_empty());
-        Ok(Self(lines.collect()))
-    }
-
-    fn method(&self) -> &str {
-        self.word(0)
-    }
-
-    /// Path without its first slash and the query.
-    fn path(&self) -> &str {
-        let path = self.word(1).split('?').next().unwrap_or_default();
-        path.strip_prefix('/').unwrap_or(path)
-    }
-
-    fn query(&self) -> Option<&str> {
-        self.word(1).split_once('?').map(|(_, query)| query)
-    }
-
-    fn word(&self, index: usize) -> &str {
-        let first = self.0.first().map_or("", String::as_str);
-        first.split(' ').nth(index).unwrap_or_default()
-    }
-
-    /// Value of a field whose name is in small letters.
-    fn field(&self, name: &str) -> Option<&str> {
-        self.0.iter().skip(1).find_map(|line| {
-            let (own, value) = line.split_once(':')?;
-            own.eq_ignore_ascii_case(name).then_some(value.trim())
-        })
     }
 }
 

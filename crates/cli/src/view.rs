@@ -14,7 +14,7 @@ use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use serde_json::json;
 use stickslip::diagnosis::{Finding, diagnose, doubts};
-use stickslip::{Run, RunOptions, keep_threads_awake, run_observed};
+use stickslip::{Occlusion, Run, RunOptions, keep_threads_awake, run_observed};
 use stickslip_evaluation::{ScoredRun, Variant};
 use stickslip_formats::Experiment;
 use stickslip_report::{
@@ -32,7 +32,7 @@ use crate::page_server::{LARGEST_BODY_MB, Notices, lock, serve};
 use crate::reported_run::DRAWN;
 use crate::verdict::Verdict;
 use opened::{DroppedFile, Opened, Source};
-use settings::{Settings, Value};
+use settings::Settings;
 
 /// Scenes of the logs that are listed.
 const SCENES: Scenes<'_> = Scenes::Named("scene.toml");
@@ -45,15 +45,8 @@ struct View {
     opened: Mutex<Option<Arc<Opened>>>,
     /// Number of the latest run; earlier ones end.
     latest: AtomicU64,
-    /// The latest run that has ended.
-    shown: Mutex<Option<Shown>>,
-}
-
-/// A run that the page shows, for the next one to be compared with.
-struct Shown {
-    log: String,
-    settings: String,
-    track: PlaybackRun,
+    /// The log of the latest run that has ended, its settings in words, and the run.
+    shown: Mutex<Option<(String, String, PlaybackRun)>>,
 }
 
 /// A question about a log. Keys are those of sliders; `run` is the page's number of a run.
@@ -61,7 +54,7 @@ struct Shown {
 struct Question {
     log: String,
     #[serde(default)]
-    changed: BTreeMap<String, Value>,
+    changed: BTreeMap<String, f64>,
     #[serde(default)]
     run: f64,
 }
@@ -128,7 +121,7 @@ impl View {
             "run" => self.run(&question, notices),
             "scene" => {
                 let opened = self.opened(&question.log)?;
-                Settings::changed(&opened, &question.changed)?.scene_text(&opened)
+                Settings::changed(&opened, &question.changed)?.scene_text()
             }
             _ => Err(hinted(
                 format!("`{what}`: the page has no such question"),
@@ -175,20 +168,12 @@ impl View {
         *lock(&self.shown) = None;
         let settings = Settings::new(&opened);
         let Experiment { setup, log, .. } = &opened.experiment;
-        let occlusion = settings.options(&opened).occlusion;
         let measured = opened.measured();
-        let reported = ReportedExperiment::new(name, "", &measured, occlusion, Vec::new());
-        let report = Report {
-            sections: vec![Section {
-                title: String::new(),
-                blocks: vec![Block::Playback(Box::new(reported.scene_playback()))],
-            }],
-            ..Report::default()
-        };
+        let reported = ReportedExperiment::new(name, "", &measured, Occlusion::None, Vec::new());
         let report = json!({
             "findings": check::Report::new(&diagnose(setup, log)).findings,
-            "sliders": settings.sliders(),
-            "html": report.to_part(),
+            "sliders": settings.sliders,
+            "html": Report::player(reported.scene_playback()).to_part(),
         });
         Ok(report.to_string())
     }
@@ -198,8 +183,8 @@ impl View {
         let number = self.latest.fetch_add(1, Ordering::Relaxed) + 1;
         let opened = self.opened(&question.log)?;
         let settings = Settings::changed(&opened, &question.changed)?;
-        let experiment = settings.experiment(&opened)?;
-        let options = settings.options(&opened);
+        let experiment = settings.experiment()?;
+        let options = settings.options();
         check_occlusion(options.occlusion, &experiment.log)?;
         refuse_nonsense(
             &experiment.setup,
@@ -230,7 +215,7 @@ impl View {
             &warnings,
         );
         if let Some(section) = report.sections.first_mut() {
-            self.lay_over(&question.log, settings.words(&opened), section);
+            self.lay_over(&question.log, settings.words(), section);
         }
         Ok(report.to_part())
     }
@@ -261,18 +246,12 @@ impl View {
         let Some(Block::Playback(playback)) = section.blocks.first_mut() else {
             return;
         };
-        let Some(track) = playback.runs.first().cloned() else {
-            return;
-        };
         let mut notes = vec![Block::Note(format!("This run: {settings}"))];
-        let shown = Shown {
-            log: log.to_owned(),
-            settings,
-            track,
-        };
-        let before = lock(&self.shown).replace(shown);
-        if let Some(before) = before.filter(|before| before.log == log) {
-            notes.push(Block::Note(format!("Previous run: {}", before.settings)));
+        let shown = playback.runs.first().cloned();
+        let shown = shown.map(|run| (log.to_owned(), settings, run));
+        let before = std::mem::replace(&mut *lock(&self.shown), shown);
+        if let Some((_, settings, run)) = before.filter(|(of, ..)| of == log) {
+            notes.push(Block::Note(format!("Previous run: {settings}")));
             playback.lowest_first.insert(0, playback.runs.len());
             playback.runs.push(PlaybackRun {
                 name: "previous run".to_owned(),
@@ -280,7 +259,7 @@ impl View {
                 line: Line::Dashed,
                 cloud: Vec::new(),
                 contacts: Vec::new(),
-                ..before.track
+                ..run
             });
         }
         section.blocks.splice(1..1, notes);

@@ -49,6 +49,7 @@ class Player {
     this.slider = this.find("input[type=range]");
     this.playing = null;
     this.guesser = this.data.methods.find((method) => method.contact);
+    root.classList.toggle("bare", this.data.methods.length === 0);
     this.drawStage();
     this.drawStrip();
     this.fillReadout();

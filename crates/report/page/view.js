@@ -123,19 +123,20 @@ class View {
     if (this.find(".findings").children.length === 0) put(this.find(".findings"), "li", "", "Nothing was found that is wrong.");
   }
 
-  addSlider({ key, label, value, low, high, step, unit }) {
+  addSlider({ key, label, value, range: [low, high], step, unit }) {
     const box = put(this.find(".sliders"), "label", "", label);
-    const number = put(box, "output");
+    const number = put(box, "span");
     const input = put(box, "input");
-    const isSwitch = typeof value === "boolean";
+    const isSwitch = high === 1 && step === 1;
     input.type = isSwitch ? "checkbox" : "range";
     input.name = key;
-    if (isSwitch) input.checked = value;
+    if (isSwitch) input.checked = value === 1;
     else Object.assign(input, { min: low, max: high, step: step ?? "any", value });
-    const tell = (shown) => (number.textContent = isSwitch ? (shown ? "on" : "off") : `${Number(shown.toPrecision(3))}${unit}`);
+    const tell = (shown) => (number.textContent = isSwitch ? "" : `${Number(shown.toPrecision(3))}${unit}`);
     tell(value);
     input.addEventListener("input", () => {
-      const now = isSwitch ? input.checked : Number(Number(input.value).toPrecision(3));
+      const place = step ? Number(input.value) : Number(Number(input.value).toPrecision(3));
+      const now = isSwitch ? Number(input.checked) : Math.min(high, Math.max(low, place));
       tell(now);
       this.changed[key] = now;
       clearTimeout(this.waiting);

@@ -74,6 +74,19 @@ pub enum Block {
 }
 
 impl Report {
+    /// A player and nothing else.
+    #[must_use]
+    pub fn player(playback: Playback) -> Self {
+        let section = Section {
+            title: String::new(),
+            blocks: vec![Block::Playback(Box::new(playback))],
+        };
+        Self {
+            sections: vec![section],
+            ..Self::default()
+        }
+    }
+
     /// The page as HTML text, with styles, fonts, figures, data and script in it.
     #[must_use]
     pub fn to_html(&self) -> String {

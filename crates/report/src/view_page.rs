@@ -35,7 +35,7 @@ pub fn view_page(logs: &[String], most_mb: u64) -> String {
                             ul class="findings" aria-live="polite" {}
                             details { summary { "what is as it should be" } ul class="findings fine" {} }
                         }
-                        fieldset {
+                        fieldset class="filter" {
                             legend { "3. Filter: a change runs it again" }
                             div class="sliders" {}
                             div class="controls" {

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use anyhow::Result;
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use stickslip::{Occlusion, RunOptions, TactileUse};
 use stickslip_fit::Parameter;
 use stickslip_formats::{Experiment, SceneEdit, read_scene};
@@ -15,256 +15,207 @@ use crate::origin::quoted;
 /// Particles by which the slider goes.
 const PARTICLES: f64 = 50.0;
 
-/// Time by which the sliders of the blackout go (s).
-const INSTANT: f64 = 0.1;
+/// Steps of the sliders of the blackout in a second.
+const PER_SECOND: f64 = 10.0;
 
-/// Position of a slider or a switch.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(untagged)]
-pub enum Value {
-    /// Of a switch.
-    On(bool),
-    /// Of a slider.
-    Number(f64),
-}
-
-/// A slider or a switch as `crates/report/page/view.js` reads it.
+/// A slider as `crates/report/page/view.js` reads it; from 0 to 1 by 1 it is a switch.
 #[derive(Debug, Serialize)]
 pub struct Slider {
+    /// Keys of the scene with a dot between them, or a name of its own.
     key: String,
     label: String,
-    value: Value,
-    low: f64,
-    high: f64,
+    value: f64,
+    range: [f64; 2],
     /// Absent where it moves by no steps.
     step: Option<f64>,
     unit: &'static str,
-    /// Keys of the scene that it sets, and whether it was moved.
-    #[serde(skip)]
-    way: Option<[&'static str; 2]>,
-    #[serde(skip)]
-    moved: bool,
+}
+
+impl Slider {
+    fn new(
+        key: impl Into<String>,
+        label: impl Into<String>,
+        value: f64,
+        (range, step, unit): ([f64; 2], Option<f64>, &'static str),
+    ) -> Self {
+        let (key, label) = (key.into(), label.into());
+        Self {
+            key,
+            label,
+            value,
+            range,
+            step,
+            unit,
+        }
+    }
 }
 
 /// All sliders of a log.
-pub struct Settings(Vec<Slider>);
+pub struct Settings<'a> {
+    opened: &'a Opened,
+    /// The sliders, in their order on the page.
+    pub sliders: Vec<Slider>,
+    /// Keys and values of scene values that were changed.
+    scene: Vec<([String; 2], f64)>,
+}
 
-impl Settings {
+impl<'a> Settings<'a> {
     /// Those of a log before any change: its scene, and the blackout that its facts know.
-    pub fn new(opened: &Opened) -> Self {
+    pub fn new(opened: &'a Opened) -> Self {
         let Experiment {
             setup, log, facts, ..
         } = &opened.experiment;
-        let defaults = RunOptions::default();
-        let friction = |(parameter, label): (Parameter, &str)| {
-            let [way, _] = parameter.scene_keys()?;
+        let frictions = [
+            (Parameter::MuS, "friction with the table"),
+            (Parameter::MuP, "friction with the pusher"),
+            (Parameter::MuF, "friction with the fixels"),
+            (Parameter::TripodRadius, "radius of feet"),
+        ];
+        let counts = |parameter| match parameter {
+            Parameter::MuF => !setup.scene.fixels.is_empty(),
+            Parameter::TripodRadius => setup.has_tripod(),
+            _ => true,
+        };
+        let frictions = frictions.into_iter().filter(|(own, _)| counts(*own));
+        let frictions = frictions.filter_map(|(parameter, label)| {
             let value = parameter.prior(setup).value(0.0);
-            let (high, unit) = match parameter.unit() {
+            let (most, unit) = match parameter.unit() {
                 // feet stand under the object
                 "m" => (setup.scene.object.shape.bounding_radius(), " m"),
                 _ => (1.0, ""),
             };
-            Some(Slider {
-                key: way.join("."),
-                label: format!("{label} ({})", parameter.name()),
-                value: Value::Number(value),
-                low: high / 100.0,
-                high: high.max(2.0 * value),
-                step: None,
-                unit,
-                way: Some(way),
-                moved: false,
-            })
-        };
-        let frictions = [
-            (true, (Parameter::MuS, "friction with the table")),
-            (true, (Parameter::MuP, "friction with the pusher")),
-            (
-                !setup.scene.fixels.is_empty(),
-                (Parameter::MuF, "friction with the fixels"),
-            ),
-            (
-                setup.has_tripod(),
-                (
-                    Parameter::TripodRadius,
-                    "distance of the feet from the middle",
-                ),
-            ),
-        ];
-        let mut sliders: Vec<Slider> = frictions
-            .into_iter()
-            .filter_map(|(is_there, slider)| is_there.then(|| friction(slider)).flatten())
-            .collect();
-        let mut other = |key: &str, label: &str, value, [low, high, step]: [f64; 3], unit| {
-            sliders.push(Slider {
-                key: key.to_owned(),
-                label: label.to_owned(),
-                value,
-                low,
-                high,
-                step: Some(step),
-                unit,
-                way: None,
-                moved: false,
-            });
-        };
-        let particles = Value::Number(defaults.particles as f64);
-        let range = [PARTICLES, 10.0 * defaults.particles as f64, PARTICLES];
-        other("particles", "particles", particles, range, "");
+            let key = parameter.scene_keys()?[0].join(".");
+            let label = format!("{label} ({})", parameter.name());
+            let range = [most / 100.0, most.max(2.0 * value)];
+            Some(Slider::new(key, label, value, (range, None, unit)))
+        });
+
+        let particles = RunOptions::default().particles as f64;
+        let numbers = ([PARTICLES, 10.0 * particles], Some(PARTICLES), "");
         let ends = opened.times.first().zip(opened.times.last());
         let (first, last) = ends.map_or((0.0, 0.0), |(first, last)| (*first, *last));
         // the last row is before the end
-        let [low, high] = [(first / INSTANT).floor(), (last / INSTANT).floor() + 1.0];
-        let [low, high] = [low, high].map(|steps| steps * INSTANT);
-        let off = match facts.occlusion() {
-            Occlusion::Rows { from, .. } => opened.times.get(from).copied(),
-            _ => None,
-        };
-        let off = Value::Number(off.unwrap_or(high));
-        let range = [low, high, INSTANT];
-        other("off_from", "camera off from", off, range, " s");
-        other(
-            "off_to",
-            "camera on again at",
-            Value::Number(high),
-            range,
-            " s",
-        );
+        let ends = [first, last + 1.0 / PER_SECOND];
+        let ends = ends.map(|time| (PER_SECOND * time).floor() / PER_SECOND);
+        let off = facts.occlude_from.and_then(|row| opened.times.get(row));
+        let off = off.copied().unwrap_or(ends[1]);
+        let times = (ends, Some(1.0 / PER_SECOND), " s");
+        let mut sliders: Vec<Slider> = frictions.collect();
+        sliders.extend([
+            Slider::new("particles", "particles", particles, numbers),
+            Slider::new("off_from", "camera off from", off, times),
+            Slider::new("off_to", "camera on again at", ends[1], times),
+        ]);
         if !log.tactile.is_empty() {
-            other(
-                "touch",
-                "use the touch sensors",
-                Value::On(true),
-                [0.0; 3],
-                "",
-            );
+            let switch = ([0.0, 1.0], Some(1.0), "");
+            sliders.push(Slider::new("touch", "touch sensors", 1.0, switch));
         }
-        Self(sliders)
+        Self {
+            opened,
+            sliders,
+            scene: Vec::new(),
+        }
     }
 
     /// Those of a log after the page's changes.
-    pub fn changed(opened: &Opened, changed: &BTreeMap<String, Value>) -> Result<Self> {
+    pub fn changed(opened: &'a Opened, changed: &BTreeMap<String, f64>) -> Result<Self> {
         let mut settings = Self::new(opened);
         for (key, value) in changed {
-            let slider = settings.0.iter_mut().find(|slider| slider.key == *key);
-            let Some(slider) = slider else {
+            let mut sliders = settings.sliders.iter_mut();
+            let Some(slider) = sliders.find(|slider| slider.key == *key) else {
                 return Err(hinted(
                     format!("`{key}`: there is no such slider"),
                     "load the page again",
                 ));
             };
-            let fits = match (slider.value, *value) {
-                (Value::Number(_), Value::Number(now)) => (slider.low..=slider.high).contains(&now),
-                (Value::On(_), Value::On(_)) => true,
-                _ => false,
-            };
-            if !fits {
-                let rule = format!("choose from {} to {}", slider.low, slider.high);
-                return Err(hinted(format!("`{key}` cannot be {value:?}"), rule));
+            let [low, high] = slider.range;
+            if !(low..=high).contains(value) {
+                let rule = format!("choose from {low} to {high}");
+                return Err(hinted(format!("`{key}` cannot be {value}"), rule));
             }
-            (slider.value, slider.moved) = (*value, true);
+            slider.value = *value;
+            if let Some((table, key)) = key.split_once('.') {
+                let way = [table, key].map(str::to_owned);
+                settings.scene.push((way, *value));
+            }
         }
         Ok(settings)
     }
 
-    /// The sliders, in their order on the page.
-    pub fn sliders(&self) -> &[Slider] {
-        &self.0
-    }
-
-    fn number(&self, key: &str) -> f64 {
-        let slider = self.0.iter().find(|slider| slider.key == key);
-        match slider.map(|slider| slider.value) {
-            Some(Value::Number(number)) => number,
-            _ => 0.0,
-        }
-    }
-
     /// Options of a run.
-    pub fn options(&self, opened: &Opened) -> RunOptions {
-        let row = |key: &str| {
-            let time = self.number(key);
-            opened.times.partition_point(|row| *row < time)
+    pub fn options(&self) -> RunOptions {
+        let value = |key: &str| {
+            let slider = self.sliders.iter().find(|slider| slider.key == key);
+            slider.map_or(1.0, |slider| slider.value)
         };
+        let times = &self.opened.times;
+        let row = |key: &str| times.partition_point(|row| *row < value(key));
         let [from, to] = [row("off_from"), row("off_to")];
-        let blind = self.0.iter().any(|slider| slider.value == Value::On(false));
+        let rows = Occlusion::Rows {
+            from,
+            to: Some(to).filter(|to| *to < times.len()),
+        };
         RunOptions {
-            particles: self.number("particles") as usize,
-            tactile: if blind {
-                TactileUse::Ignored
-            } else {
+            particles: value("particles") as usize,
+            tactile: if value("touch") > 0.5 {
                 TactileUse::Used
+            } else {
+                TactileUse::Ignored
             },
-            occlusion: match from < to {
-                true => Occlusion::Rows {
-                    from,
-                    to: Some(to).filter(|to| *to < opened.times.len()),
-                },
-                false => Occlusion::None,
-            },
+            occlusion: if from < to { rows } else { Occlusion::None },
             ..RunOptions::default()
         }
     }
 
-    /// Sliders that were moved and set a scene's value: the way of its keys and the value.
-    fn of_scene(&self) -> impl Iterator<Item = ([&'static str; 2], f64)> {
-        let moved = self.0.iter().filter(|slider| slider.moved);
-        moved.filter_map(|slider| Some((slider.way?, self.number(&slider.key))))
-    }
-
     /// The scene's file with the changes.
-    pub fn scene_text(&self, opened: &Opened) -> Result<String> {
-        let mut edit = SceneEdit::new(&opened.scene, &opened.given[1])?;
-        for (way, value) in self.of_scene() {
-            edit.comment(&format!(
-                "{} = {value}: set in `stickslip view`",
-                way.join(".")
-            ));
-            edit.set(&way, value);
+    pub fn scene_text(&self) -> Result<String> {
+        let mut edit = SceneEdit::new(&self.opened.scene, &self.opened.given[1])?;
+        for ([table, key], value) in &self.scene {
+            edit.comment(&format!("{table}.{key} = {value}: set in `stickslip view`"));
+            edit.set(&[table, key], *value);
         }
         Ok(edit.text())
     }
 
     /// The experiment with the changed scene.
-    pub fn experiment(&self, opened: &Opened) -> Result<Experiment> {
+    pub fn experiment(&self) -> Result<Experiment> {
         Ok(Experiment {
-            setup: read_scene(&self.scene_text(opened)?, &opened.given[1])?,
-            ..opened.experiment.clone()
+            setup: read_scene(&self.scene_text()?, &self.opened.given[1])?,
+            ..self.opened.experiment.clone()
         })
     }
 
     /// Scene values that were changed, and the command that runs the same.
-    pub fn words(&self, opened: &Opened) -> String {
-        let options = self.options(opened);
+    pub fn words(&self) -> String {
+        let options = self.options();
+        let [log, scene] = &self.opened.given;
         let values = self
-            .of_scene()
-            .map(|(way, value)| format!("{} = {value}", way.join(".")));
+            .scene
+            .iter()
+            .map(|([table, key], value)| format!("{table}.{key} = {value}"));
         let values: Vec<String> = values.collect();
-        let scene = match values.is_empty() {
-            true => opened.given[1].clone(),
-            false => "scene.toml".to_owned(),
-        };
-        let mut command = format!(
-            "stickslip filter {} --scene {}",
-            quoted(&opened.given[0]),
-            quoted(&scene)
-        );
-        if let Occlusion::Rows { from, to } = options.occlusion {
-            let to = to.map_or(String::new(), |to| format!(":{to}"));
-            command += &format!(" --occlude {from}{to}");
-        }
-        if options.particles != RunOptions::default().particles {
-            command += &format!(" --particles {}", options.particles);
-        }
-        if options.tactile == TactileUse::Ignored {
-            command += " --no-tactile";
-        }
-        match values.is_empty() {
-            true => format!("the scene as it is. In a terminal: {command}"),
-            false => format!(
-                "{}. Save the scene, then in a terminal: {command}",
-                values.join(", ")
+        let (what, scene) = match values.is_empty() {
+            true => ("the scene as it is. In".to_owned(), scene.as_str()),
+            false => (
+                format!("{}. Save the scene, then in", values.join(", ")),
+                "scene.toml",
             ),
-        }
+        };
+        let hidden = match options.occlusion {
+            Occlusion::Rows { from, to: Some(to) } => format!(" --occlude {from}:{to}"),
+            Occlusion::Rows { from, to: None } => format!(" --occlude {from}"),
+            _ => String::new(),
+        };
+        let touch = if options.tactile == TactileUse::Ignored {
+            " --no-tactile"
+        } else {
+            ""
+        };
+        format!(
+            "{what} a terminal: stickslip filter {} --scene {} --particles {}{hidden}{touch}",
+            quoted(log),
+            quoted(scene),
+            options.particles
+        )
     }
 }

@@ -15,6 +15,13 @@ fn page_of(case: &Experiment) -> (Session, String) {
     (Session::view(&[&log]), log)
 }
 
+/// Asserts that an answer is a refusal with these words.
+#[track_caller]
+fn assert_refused((status, text): (u16, String), words: &str) {
+    assert!(status == 422 && text.starts_with("error: "), "{text}");
+    assert!(text.contains(words), "{text}");
+}
+
 #[test]
 fn strangers_are_refused_in_words() {
     let (session, log) = page_of(&Experiment::copy(SLIDE, "view_page/strangers"));
@@ -22,47 +29,32 @@ fn strangers_are_refused_in_words() {
     assert!(page.starts_with("HTTP/1.1 200") && page.contains(&log));
     let question = json!({ "log": log }).to_string();
     let length = question.len();
-    let asked = |address: &str, host: &str, origin: &str| {
+    let asked = |head: &str| {
         session.ask(&format!(
-            "POST /{address} HTTP/1.1\nHost: {host}\n{origin}Content-Length: {length}\n\n{question}"
+            "POST /check{head}\nContent-Length: {length}\n\n{question}"
         ))
     };
-    let own = "Origin: http://HOST\n";
-    assert!(asked("check?TOKEN", "HOST", own).starts_with("HTTP/1.1 200"));
-    for (address, host, origin, words) in [
+    let own = "?TOKEN HTTP/1.1\nHost: HOST\nOrigin: http://HOST";
+    assert!(asked(own).starts_with("HTTP/1.1 200"));
+    let address = "not the address that the program printed";
+    for (right, wrong, words) in [
+        ("?TOKEN", "?0123", address),
+        ("?TOKEN", "", address),
+        ("Host: HOST", "Host: evil.example", address),
         (
-            "check?0123",
-            "HOST",
-            own,
-            "not the address that the program printed",
+            "http://HOST",
+            "http://evil.example",
+            "from http://evil.example",
         ),
-        (
-            "check",
-            "HOST",
-            own,
-            "not the address that the program printed",
-        ),
-        (
-            "check?TOKEN",
-            "evil.example",
-            own,
-            "not the address that the program printed",
-        ),
-        (
-            "check?TOKEN",
-            "HOST",
-            "Origin: http://evil.example\n",
-            "comes from http://evil.example",
-        ),
-        ("check?TOKEN", "HOST", "Origin: null\n", "comes from null"),
-        ("check?TOKEN", "HOST", "", "comes from no page"),
+        ("http://HOST", "null", "from null"),
+        ("\nOrigin: http://HOST", "", "from no page"),
     ] {
-        let answer = asked(address, host, origin);
+        let answer = asked(&own.replace(right, wrong));
+        assert!(answer.starts_with("HTTP/1.1 403"), "{answer}");
         assert!(
-            answer.starts_with("HTTP/1.1 403") && answer.contains(words),
+            answer.contains(words) && !answer.contains("findings"),
             "{answer}"
         );
-        assert!(!answer.contains("findings"), "{answer}");
     }
 }
 
@@ -70,26 +62,36 @@ fn strangers_are_refused_in_words() {
 fn too_large_files_are_refused_in_words() {
     let (session, _) = page_of(&Experiment::copy(SLIDE, "view_page/large"));
     let head = "POST /drop?TOKEN HTTP/1.1\nHost: HOST\nOrigin: http://HOST\n";
-    // as it claims, and as it is sent
-    let claimed = session.ask(&format!("{head}Content-Length: 1000000000\n\n{{}}"));
-    let sent = session.ask(&format!(
-        "{head}Content-Length: 65000000\n\n{}",
-        " ".repeat(65_000_000)
-    ));
-    for (answer, size) in [(claimed, "1000 MB"), (sent, "65 MB")] {
-        assert!(answer.starts_with("HTTP/1.1 413"), "{answer}");
-        assert!(answer.contains(&format!(
-            "these files have {size}; the page takes at most 64 MB"
-        )));
+    let bytes = " ".repeat(65_000_000);
+    // as it claims, as it is sent, and without a claim
+    for (rest, status, words) in [
+        (
+            "Content-Length: 1000000000\n\n{}",
+            "413",
+            "these files have 1000 MB",
+        ),
+        (
+            &format!("Content-Length: 65000000\n\n{bytes}"),
+            "413",
+            "takes at most 64 MB",
+        ),
+        (
+            "Transfer-Encoding: chunked\n\n0\n\n",
+            "411",
+            "does not say its length",
+        ),
+    ] {
+        let answer = session.ask(&format!("{head}{rest}"));
+        assert!(
+            answer[9..].starts_with(status) && answer.contains(words),
+            "{answer}"
+        );
     }
-    let unsaid = session.ask(&format!("{head}Transfer-Encoding: chunked\n\n0\n\n"));
-    assert!(unsaid.starts_with("HTTP/1.1 411") && unsaid.contains("does not say its length"));
 }
 
 #[test]
 fn names_lead_out_of_no_list_and_wrong_files_are_told() {
-    let case = Experiment::copy(SLIDE, "view_page/names");
-    let (session, log) = page_of(&case);
+    let (session, log) = page_of(&Experiment::copy(SLIDE, "view_page/names"));
     for name in [
         "../../../../etc",
         "/etc/passwd",
@@ -97,41 +99,26 @@ fn names_lead_out_of_no_list_and_wrong_files_are_told() {
         "",
     ] {
         for what in ["check", "open", "run", "scene"] {
-            let (status, text) = session.post(what, &json!({ "log": name }));
-            assert_eq!(status, 422, "{text}");
-            assert!(text.contains("no log of this page has that name"), "{text}");
+            let answer = session.post(what, &json!({ "log": name }));
+            assert_refused(answer, "no log of this page has that name");
         }
     }
-    let drop = |files: &[(&str, &str)]| {
-        let files = files
-            .iter()
-            .map(|(name, text)| json!({"name": name, "text": text}));
-        session.post("drop", &json!({ "files": files.collect::<Vec<_>>() }))
-    };
-    for (files, words) in [
+    for (names, words) in [
         (
-            vec![("../scene.toml", ""), ("log.csv", "")],
+            ["../scene.toml", "log.csv"],
             "`../scene.toml`: a path and no file name",
         ),
-        (vec![("log.csv", "")], "log.csv: not a scene and a log"),
         (
-            vec![("scene.toml", "gravity = 9.81"), ("log.csv", "time\n")],
-            "scene.toml",
+            ["log.csv", "other.csv"],
+            "log.csv, other.csv: not a scene and a log",
         ),
+        (["scene.toml", "log.csv"], "scene.toml"),
     ] {
-        let (status, text) = drop(&files);
-        assert!(
-            status == 422 && text.starts_with("error: ") && text.contains(words),
-            "{text}"
-        );
+        let files = names.map(|name| json!({"name": name, "text": "time"}));
+        assert_refused(session.post("drop", &json!({ "files": files })), words);
     }
-    let (status, text) = session.post("run", &json!({"log": log, "changed": {"particles": 1e9}}));
-    assert!(
-        status == 422 && text.contains("help: choose from 50 to 5000"),
-        "{text}"
-    );
-    let (status, text) = session.post("other", &json!({ "log": log }));
-    assert!(status == 422 && text.contains("no such question"), "{text}");
+    let far = json!({"log": log, "changed": {"particles": 1e9}});
+    assert_refused(session.post("run", &far), "help: choose from 50 to 5000");
     let refused = stickslip().args(["view", "nowhere"]).output().unwrap();
     let told = String::from_utf8(refused.stderr).unwrap();
     assert!(
@@ -140,74 +127,45 @@ fn names_lead_out_of_no_list_and_wrong_files_are_told() {
     );
 }
 
-/// Cells of the table of scores on a page.
-fn cells(html: &str) -> Vec<&str> {
-    let (_, table) = html.split_once("verdict").unwrap();
-    let cells = table.split("<td").skip(1);
-    cells
-        .map(|cell| cell.split(['>', '<']).nth(1).unwrap())
-        .collect()
-}
-
 #[test]
 fn a_run_with_changes_is_that_of_filter_with_the_saved_scene() {
     let case = Experiment::copy(STOP, "view_page/run");
     let (session, log) = page_of(&case);
-    let (status, found) = session.post("check", &json!({ "log": log }));
-    let own = printed(stickslip().args(["check", &log, "--json"]));
-    assert_eq!(
-        (status, serde_json::from_str::<Value>(&found).unwrap()),
-        (200, own)
-    );
+    let answer = |what: &str, question: Value| {
+        let (status, text) = session.post(what, &question);
+        assert_eq!(status, 200, "{text}");
+        text
+    };
+    let found: Value = serde_json::from_str(&answer("check", json!({ "log": log }))).unwrap();
+    assert_eq!(found, printed(stickslip().args(["check", &log, "--json"])));
+    assert!(answer("open", json!({ "log": log })).contains("Small circles: its feet"));
 
-    let (status, opened) = session.post("open", &json!({ "log": log }));
-    let opened: Value = serde_json::from_str(&opened).unwrap();
-    let keys: Vec<&str> = opened["sliders"]
-        .as_array()
-        .unwrap()
-        .iter()
-        .map(|slider| slider["key"].as_str().unwrap())
-        .collect();
-    let frictions = [
-        "support.friction",
-        "pusher.friction",
-        "fixels.friction",
-        "support.tripod_radius",
+    let changed = json!({"support.friction": 0.21, "particles": 100, "off_from": 1.5, "off_to": 2.5, "touch": 0});
+    let question = json!({"log": log, "run": 1, "changed": changed});
+    let page = answer("run", question.clone());
+    let again = answer("run", json!({ "log": log }));
+    let previous = "\"name\":\"previous run\"";
+    assert!(!page.contains(previous) && again.contains(previous));
+
+    let scene = answer("scene", question);
+    let kept = [
+        "# Nominal values; the truth",
+        "# support.friction = 0.21: set in",
     ];
-    assert_eq!((status, &keys[..4]), (200, &frictions[..]));
-    assert_eq!(keys[4..], ["particles", "off_from", "off_to", "touch"]);
-    assert!(
-        opened["html"]
-            .as_str()
-            .unwrap()
-            .contains("Small circles: its feet")
-    );
-
-    let changed = json!({"support.friction": 0.21, "particles": 100, "off_from": 1.5, "off_to": 2.5, "touch": false});
-    let question = json!({ "log": log, "run": 1, "changed": changed });
-    let (status, html) = session.post("run", &question);
-    assert_eq!(status, 200, "{html}");
-    assert!(!html.contains("previous run"));
-    let (_, again) = session.post("run", &json!({ "log": log, "run": 2 }));
-    assert!(again.contains("\"name\":\"previous run\""));
-
-    let (_, scene) = session.post("scene", &question);
-    assert!(
-        scene.contains("# Nominal values; the truth")
-            && scene.contains("# support.friction = 0.21: set in")
-    );
+    assert!(kept.iter().all(|line| scene.contains(line)), "{scene}");
     case.edit("scene.toml", |_| scene);
-    let (_, command) = html.split_once("in a terminal: stickslip ").unwrap();
-    let words = command
+    let (_, command) = page.split_once("in a terminal: stickslip ").unwrap();
+    let command = command
         .split('<')
         .next()
         .unwrap()
         .replace("--scene scene.toml", "");
-    let own = printed(stickslip().args(words.split_whitespace()).arg("--json"));
-    let [dark, last] = ["wmse_occluded_mm", "final_error_mm"]
-        .map(|key| format!("{:.3}", own[key].as_f64().unwrap()));
-    let cells = cells(&html);
-    assert_eq!([cells[0], cells[4]], [&dark, &last], "{own:#} {cells:?}");
+    let own = printed(stickslip().args(command.split_whitespace()).arg("--json"));
+    let (_, scores) = page.split_once("verdict").unwrap();
+    for key in ["wmse_occluded_mm", "wmse_moving_mm", "final_error_mm"] {
+        let cell = format!(">{:.3}</td>", own[key].as_f64().unwrap());
+        assert!(scores.contains(&cell), "{key}: {own:#}");
+    }
 }
 
 #[test]
@@ -218,15 +176,18 @@ fn a_run_ends_when_another_begins() {
     let own = format!("http://{}", session.host);
     request.headers_mut().insert("Origin", own.parse().unwrap());
     let (mut socket, _) = connect(request).unwrap();
-    let long = json!({"log": log, "run": 1, "changed": {"particles": 5000}});
+    let run = |number: u32, particles: u32| {
+        let changed = json!({ "particles": particles });
+        session.post(
+            "run",
+            &json!({"log": log, "run": number, "changed": changed}),
+        )
+    };
     thread::scope(|scope| {
-        let replaced = scope.spawn(|| session.post("run", &long));
+        let replaced = scope.spawn(|| run(1, 5000));
         // it has begun
         let told: Value = serde_json::from_str(socket.read().unwrap().to_text().unwrap()).unwrap();
-        assert_eq!(told["run"], 1.0);
-        let short = json!({"log": log, "run": 2, "changed": {"particles": 50}});
-        assert_eq!(session.post("run", &short).0, 200);
-        let (status, text) = replaced.join().unwrap();
-        assert_eq!((status, text.as_str()), (422, "error: another run began"));
+        assert_eq!((&told["run"], run(2, 50).0), (&json!(1.0), 200));
+        assert_refused(replaced.join().unwrap(), "another run began");
     });
 }
