@@ -95,8 +95,8 @@ impl<'a> Settings<'a> {
         let ends = opened.times.first().zip(opened.times.last());
         let (first, last) = ends.map_or((0.0, 0.0), |(first, last)| (*first, *last));
         // the last row is before the end
-        let ends = [first, last + 1.0 / PER_SECOND];
-        let ends = ends.map(|time| (PER_SECOND * time).floor() / PER_SECOND);
+        let ends = [first, last].map(|time| (PER_SECOND * time).floor());
+        let ends = [ends[0] / PER_SECOND, (ends[1] + 1.0) / PER_SECOND];
         let off = facts.occlude_from.and_then(|row| opened.times.get(row));
         let off = off.copied().unwrap_or(ends[1]);
         let times = (ends, Some(1.0 / PER_SECOND), " s");
