@@ -36,7 +36,9 @@ class View {
   }
 
   fail(words) {
-    this.find(".failed").textContent = words;
+    const failed = this.find(".failed");
+    failed.textContent = words;
+    if (words) failed.scrollIntoView({ block: "center" });
   }
 
   say(words) {
@@ -49,7 +51,6 @@ class View {
       const { run, row, rows } = JSON.parse(data);
       if (run !== this.run || !this.running) return;
       this.find("progress").value = row / rows;
-      this.say(`row ${row} of ${rows}`);
     });
     socket.addEventListener("close", () => setTimeout(() => this.connect(), 1000));
   }
@@ -149,7 +150,8 @@ class View {
     const { log } = this;
     const run = (this.run = Math.random());
     this.running = true;
-    this.say("begins");
+    this.find("progress").value = 0;
+    this.say("runs");
     this.attempt(async () => {
       const html = await this.ask("run", { log, run, changed: this.changed }).catch((error) => {
         // of a run that another has replaced nothing is said

@@ -13,7 +13,7 @@ use crate::common::{Experiment, SLIDE, empty_folder};
 fn wait(tab: &mut Tab, expression: &str) {
     let look = format!(
         "new Promise((resolve) => {{ const begin = Date.now(); const look = () => {{ const is = {expression};
-         if (is || Date.now() - begin > 60000) resolve(Boolean(is)); else setTimeout(look, 50); }}; look(); }})"
+         if (is || Date.now() - begin > 120000) resolve(Boolean(is)); else setTimeout(look, 50); }}; look(); }})"
     );
     let state = "document.querySelector('main').innerText";
     assert_eq!(
@@ -22,6 +22,14 @@ fn wait(tab: &mut Tab, expression: &str) {
         "{expression}: {}",
         tab.evaluate(state)
     );
+}
+
+/// Moves a slider.
+fn slide(tab: &mut Tab, name: &str, value: f64) {
+    tab.evaluate(&format!(
+        "{{ const slider = document.querySelector('[name=\"{name}\"]'); slider.value = {value};
+           slider.dispatchEvent(new Event('input')); }}"
+    ));
 }
 
 fn from_an_empty_page_to_a_saved_scene(width: u32) {
@@ -59,22 +67,18 @@ fn from_an_empty_page_to_a_saved_scene(width: u32) {
         0
     );
 
-    // a run, and another one by a slider, over the one before
+    // a run, replaced at once by one with fewer particles, and another one over that
+    let rows = |count: u32| {
+        let rows = "document.querySelectorAll('.readout tbody tr').length";
+        format!("{rows} === {count} && document.querySelector('.said').textContent === 'done'")
+    };
     tab.evaluate("document.querySelector('.run').click()");
-    wait(
-        &mut tab,
-        "document.querySelectorAll('.readout tbody tr').length === 1",
-    );
+    slide(&mut tab, "particles", 50.0);
+    wait(&mut tab, &rows(1));
     assert_eq!(tab.evaluate("document.querySelector('progress').value"), 1);
     tab.evaluate("players[0].seek(3)");
-    let slide =
-        "const slider = document.querySelector('[name=\"support.friction\"]'); slider.focus();
-                 slider.value = 0.4; slider.dispatchEvent(new Event('input', {bubbles: true}))";
-    tab.evaluate(slide);
-    wait(
-        &mut tab,
-        "document.querySelectorAll('.readout tbody tr').length === 2",
-    );
+    slide(&mut tab, "support.friction", 0.4);
+    wait(&mut tab, &rows(2));
     assert_eq!(tab.evaluate("players[0].time"), 3);
     let names: Vec<Value> = serde_json::from_value(tab.evaluate(
         "[...document.querySelectorAll('.readout tbody label')].map((label) => label.textContent)",
