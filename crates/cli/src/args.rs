@@ -48,7 +48,7 @@ pub enum Command {
     Check(CheckArgs),
     /// Estimate row by row: JSON lines in, one estimate per line out
     Live(LiveArgs),
-    /// Serve a page: check logs, run the filter, change friction and blackout by sliders
+    /// Serve a page: check logs, run the filter, change friction and occlusion by sliders
     View(ViewArgs),
     /// Calibrate a camera from frames of a tag board
     Calibrate(CalibrateArgs),

@@ -26,7 +26,7 @@ impl Head {
         path.strip_prefix('/').unwrap_or(path)
     }
 
-    /// What follows the question mark.
+    /// Text after the question mark.
     pub fn query(&self) -> Option<&str> {
         self.word(1).split_once('?').map(|(_, query)| query)
     }

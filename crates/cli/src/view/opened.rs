@@ -106,7 +106,7 @@ impl Opened {
         ))
     }
 
-    /// What was measured, without the truth, with times as pages show them.
+    /// The experiment without the truth, with times as pages show them.
     pub fn measured(&self) -> Experiment {
         let mut measured = self.experiment.clone();
         measured.log.time.clone_from(&self.times);

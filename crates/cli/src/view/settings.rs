@@ -15,7 +15,7 @@ use crate::origin::quoted;
 /// Particles by which the slider goes.
 const PARTICLES: f64 = 50.0;
 
-/// Steps of the sliders of the blackout in a second.
+/// Steps of the sliders of the occlusion in a second.
 const PER_SECOND: f64 = 10.0;
 
 /// A slider as `crates/report/page/view.js` reads it; from 0 to 1 by 1 it is a switch.
@@ -60,7 +60,7 @@ pub struct Settings<'a> {
 }
 
 impl<'a> Settings<'a> {
-    /// Those of a log before any change: its scene, and the blackout that its facts know.
+    /// Those of a log before any change: its scene, and the occlusion that its facts know.
     pub fn new(opened: &'a Opened) -> Self {
         let Experiment {
             setup, log, facts, ..

@@ -16,7 +16,7 @@ pub struct Tab {
     /// Name of the page in the protocol.
     page: Option<String>,
     asked: u64,
-    /// What the page has written to its console, and its errors.
+    /// Messages of the page to its console, and its errors.
     pub console: Vec<Value>,
 }
 
