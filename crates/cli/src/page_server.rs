@@ -296,10 +296,12 @@ impl Shared {
         if reader.take(length).read_to_end(&mut body)? as u64 != length {
             return Err(io::ErrorKind::UnexpectedEof.into());
         }
-        Ok(match answers(head.path(), &body, &self.notices) {
-            Ok(text) => ("200 OK", text),
-            Err(error) => ("422 Unprocessable Content", said(&error)),
-        })
+        // a status of an error would stand in the browser's console
+        let answer = match answers(head.path(), &body, &self.notices) {
+            Ok(text) => json!({ "answer": text }),
+            Err(error) => json!({ "error": said(&error) }),
+        };
+        Ok(("200 OK", answer.to_string()))
     }
 
     fn serve_socket(&self, stream: Patient, number: u64) -> io::Result<()> {

@@ -24,8 +24,9 @@ class View {
     const answer = await fetch(`/${what}${location.search}`, { method: "POST", body }).catch(() => {
       throw new Error("The program does not answer. Look at its terminal, and start it again.");
     });
-    const text = await answer.text();
-    if (!answer.ok) throw new Error(text);
+    if (!answer.ok) throw new Error(await answer.text());
+    const { answer: text, error } = await answer.json();
+    if (error !== undefined) throw new Error(error);
     return text;
   }
 

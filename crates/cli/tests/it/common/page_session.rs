@@ -78,15 +78,18 @@ impl Session {
         String::from_utf8_lossy(&answer).into_owned()
     }
 
-    /// Answer to a question of the page: status and text.
-    pub fn post(&self, what: &str, question: &Value) -> (u16, String) {
+    /// Answer to a question of the page, or its refusal.
+    pub fn post(&self, what: &str, question: &Value) -> Result<String, String> {
         let body = question.to_string();
         let length = body.len();
         let answer = self.ask(&format!(
             "POST /{what}?TOKEN HTTP/1.1\nHost: HOST\nOrigin: http://HOST\nContent-Length: {length}\n\n{body}"
         ));
-        let (head, text) = answer.split_once("\r\n\r\n").unwrap();
-        (head[9..12].parse().unwrap(), text.to_owned())
+        let (_, text) = answer.split_once("\r\n\r\n").unwrap();
+        let mut said: Value = serde_json::from_str(text).unwrap();
+        let [answer, error] = ["answer", "error"].map(|key| said[key].take());
+        let text = |of: Value| of.as_str().map(str::to_owned);
+        text(answer).ok_or_else(|| text(error).unwrap())
     }
 
     /// Ends the source: exit code.
