@@ -66,10 +66,10 @@ impl<'a> Settings<'a> {
             setup, log, facts, ..
         } = &opened.experiment;
         let frictions = [
-            (Parameter::MuS, "friction with the table"),
-            (Parameter::MuP, "friction with the pusher"),
-            (Parameter::MuF, "friction with the fixels"),
-            (Parameter::TripodRadius, "radius of feet"),
+            (Parameter::MuS, "friction with the table (mu_s)"),
+            (Parameter::MuP, "friction with the pusher (mu_p)"),
+            (Parameter::MuF, "friction with the fixels (mu_f)"),
+            (Parameter::TripodRadius, "radius of feet (d_tri)"),
         ];
         let counts = |parameter| match parameter {
             Parameter::MuF => !setup.scene.fixels.is_empty(),
@@ -85,7 +85,6 @@ impl<'a> Settings<'a> {
                 _ => (1.0, ""),
             };
             let key = parameter.scene_keys()?[0].join(".");
-            let label = format!("{label} ({})", parameter.name());
             let range = [most / 100.0, most.max(2.0 * value)];
             Some(Slider::new(key, label, value, (range, None, unit)))
         });
