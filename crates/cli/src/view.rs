@@ -61,7 +61,7 @@ struct Question {
 
 /// Files that are dropped on the page.
 #[derive(Deserialize)]
-struct Drop {
+struct Dropped {
     files: Vec<DroppedFile>,
 }
 
@@ -106,7 +106,7 @@ impl View {
     /// Answers a question of the page.
     fn answer(&self, what: &str, text: &[u8], notices: &Notices) -> Result<String> {
         if what == "drop" {
-            return self.take(&parsed::<Drop>(text)?.files);
+            return self.take(&parsed::<Dropped>(text)?.files);
         }
         let question: Question = parsed(text)?;
         match what {
