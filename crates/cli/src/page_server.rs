@@ -247,7 +247,11 @@ impl Shared {
             _ => ("403 Forbidden", "This page asks nothing.\n".to_owned()),
         };
         // in one piece, so that a client's first look shows how it went
-        let kind = if head.method() == "GET" { "html" } else { "plain" };
+        let kind = if head.method() == "GET" {
+            "html"
+        } else {
+            "plain"
+        };
         let answer = format!(
             "HTTP/1.1 {status}\r\nContent-Type: text/{kind}; charset=utf-8\r\nContent-Length: {}\r\n\
              Cache-Control: no-store\r\nReferrer-Policy: no-referrer\r\nX-Frame-Options: DENY\r\n\
