@@ -13,7 +13,7 @@ use stickslip::useful_threads;
 const PER_PROCESSOR: usize = 4;
 
 /// Number of threads to work on.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub struct ThreadArgs {
     /// Threads, at most 4 per processor; results do not depend on it [default: 1 per processor, at
     /// most 1 per 128 particles of a filter]

@@ -48,6 +48,8 @@ pub enum Command {
     Check(CheckArgs),
     /// Estimate row by row: JSON lines in, one estimate per line out
     Live(LiveArgs),
+    /// Serve a page: check logs, run the filter, change friction and occlusion by sliders
+    View(ViewArgs),
     /// Calibrate a camera from frames of a tag board
     Calibrate(CalibrateArgs),
     /// Track the tags of object and pusher through camera frames, into a log
@@ -168,6 +170,25 @@ pub struct CheckArgs {
     /// Print one JSON object
     #[arg(long)]
     pub json: bool,
+}
+
+/// Arguments of `stickslip view`.
+#[derive(Debug, Args)]
+pub struct ViewArgs {
+    /// Experiment folders (scene.toml and a log), or folders of such folders
+    #[arg(value_name = "DIR")]
+    pub folders: Vec<PathBuf>,
+    /// Port on this machine [default: a free one]
+    #[arg(
+        long,
+        value_name = "PORT",
+        default_value_t = 0,
+        hide_default_value = true
+    )]
+    pub port: u16,
+    /// How many threads
+    #[command(flatten)]
+    pub threads: ThreadArgs,
 }
 
 /// Arguments of `stickslip info`.

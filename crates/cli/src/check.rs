@@ -15,7 +15,7 @@ use crate::verdict::Verdict;
 
 /// A finding in JSON.
 #[derive(Debug, Serialize)]
-struct JsonFinding {
+pub struct JsonFinding {
     subject: String,
     severity: String,
     found: String,
@@ -24,10 +24,11 @@ struct JsonFinding {
 
 /// All findings with their counts.
 #[derive(Debug, Serialize)]
-struct Report {
+pub struct Report {
     problems: usize,
     warnings: usize,
-    findings: Vec<JsonFinding>,
+    /// The findings, in their order.
+    pub findings: Vec<JsonFinding>,
 }
 
 /// Runs the command.
@@ -47,7 +48,8 @@ pub fn check(args: &CheckArgs) -> Result<Verdict> {
 }
 
 impl Report {
-    fn new(findings: &[Finding]) -> Self {
+    /// Of findings, in their order.
+    pub fn new(findings: &[Finding]) -> Self {
         let count = |severity: Severity| {
             findings
                 .iter()

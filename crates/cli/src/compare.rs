@@ -29,7 +29,7 @@ use crate::log_files::log_path;
 use crate::output::{show, talk};
 use crate::progress::{Work, bar};
 use crate::verdict::Verdict;
-pub use folders::{Scenes, expand};
+pub use folders::{Scenes, expand, is_experiment};
 pub use results::{ComparedRun, ShownScores};
 use results::{Comparison, FolderResult, LostFolder};
 

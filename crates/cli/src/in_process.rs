@@ -8,7 +8,7 @@ use anyhow::Result;
 use stickslip::{Log, Occlusion, Setup};
 use stickslip_evaluation::{ScoredRun, Variant};
 use stickslip_formats::{BagOptions, Experiment, LogWarning};
-use stickslip_report::{Block, Report, ReportedExperiment, ReportedRun, Section};
+use stickslip_report::{Report, ReportedExperiment, ReportedRun};
 
 use crate::compare;
 pub use crate::compare::{ComparedRun, ShownScores};
@@ -93,14 +93,7 @@ pub fn run_player(experiment: &Experiment, scored: ScoredRun, occlusion: Occlusi
         cloud: Vec::new(),
     };
     let reported = ReportedExperiment::new(title, "", experiment, occlusion, vec![run]);
-    let report = Report {
-        sections: vec![Section {
-            title: String::new(),
-            blocks: vec![Block::Playback(Box::new(reported.playback()))],
-        }],
-        ..Report::default()
-    };
-    report.to_html()
+    Report::player(reported.playback()).to_html()
 }
 
 /// The page of `stickslip compare --report` about runs, without players.

@@ -30,6 +30,7 @@ mod log_files;
 mod new;
 mod origin;
 mod output;
+mod page_server;
 mod progress;
 mod reported_run;
 mod reproduce;
@@ -38,6 +39,7 @@ mod simulation_args;
 mod since_start;
 mod topic_args;
 mod verdict;
+mod view;
 
 use std::ffi::OsString;
 use std::io::{self, Write};
@@ -85,6 +87,7 @@ fn command(command: Command) -> u8 {
         Command::Check(args) => check::check(&args),
         Command::Info(args) => info::info(&args),
         Command::Live(args) => live::live(&args),
+        Command::View(args) => view::view(&args),
         Command::Calibrate(args) => camera::calibrate(&args),
         Command::Track(args) => camera::track(&args),
         Command::Render(args) => camera::render(&args),

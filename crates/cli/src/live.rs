@@ -2,7 +2,6 @@
 
 mod latencies;
 mod lines;
-mod page;
 mod recording;
 mod session;
 mod shown_row;
@@ -11,17 +10,16 @@ use std::io::stdin;
 use std::process::exit;
 
 use anyhow::Result;
-use stickslip::{Setup, TrackerOptions};
+use stickslip::TrackerOptions;
 use stickslip_report::live_page;
 
 use crate::experiment::read_scene_file;
-use crate::failure::hinted;
 use crate::given::scene_file;
 use crate::live_args::LiveArgs;
 use crate::output::{Reader, stream_line, talk};
+use crate::page_server::{PageServer, serve};
 use crate::verdict::Verdict;
 use lines::{Lines, Stop};
-use page::PageServer;
 use recording::Recording;
 use session::Session;
 
@@ -42,10 +40,12 @@ pub fn live(args: &LiveArgs) -> Result<Verdict> {
     let record = |path| Recording::create(path, &setup.scene);
     let mut recording = args.record.as_deref().map(record).transpose()?;
     let mut recorded = Verdict::Done;
-    let mut page = args
-        .page
-        .map(|port| open_page(&setup, &scene.display().to_string(), port))
-        .transpose()?;
+    let page = |port| {
+        let page = live_page(&setup.scene, &scene.display().to_string());
+        serve(page, None, (port, "--page=8321"))
+    };
+    let page = args.page.map(page).transpose()?;
+    let page = page.as_ref().map(PageServer::notices);
     let pool = args.threads.filter_pool(args.particles)?;
     let lines = Lines::read(stdin());
     stop_on_signal(lines.stop());
@@ -60,7 +60,7 @@ pub fn live(args: &LiveArgs) -> Result<Verdict> {
             }
             let reader = stream_line(&answer.text)?;
             session.answered(arrived);
-            if let Some(page) = page.as_mut().filter(|page| page.wants())
+            if let Some(page) = page.filter(|page| page.wants())
                 && let Some(shown) = session.shown(&answer, arrived)
             {
                 page.show(shown);
@@ -114,17 +114,4 @@ fn stop_on_signal(stop: Stop) {
             "warning: a signal ends the program and not only its source: {error}"
         ));
     }
-}
-
-/// Serves the live page of a scene, and says where.
-fn open_page(setup: &Setup, name: &str, port: u16) -> Result<PageServer> {
-    let page = live_page(&setup.scene, name);
-    let server = PageServer::start(page, port).map_err(|error| {
-        hinted(
-            format!("the page cannot be served at port {port}: {error}"),
-            "name another port, as --page=8321, or none",
-        )
-    })?;
-    talk(format_args!("open {}", server.address()));
-    Ok(server)
 }

@@ -32,7 +32,7 @@ pub fn origin(more: impl IntoIterator<Item = (&'static str, String)>) -> Vec<(St
 }
 
 /// An argument as a shell takes it.
-fn quoted(word: &str) -> String {
+pub fn quoted(word: &str) -> String {
     let plain = |letter: char| letter.is_alphanumeric() || "-_./:=,+%@".contains(letter);
     if !word.is_empty() && word.chars().all(plain) {
         word.to_owned()

@@ -100,11 +100,15 @@ pub fn tell(error: &anyhow::Error) -> Verdict {
         let _ = error.print();
         return Verdict::BadArguments;
     }
-    talk(format_args!("error: {}", one_line(error)));
-    if let Some(hinted) = error.downcast_ref::<Hinted>() {
-        talk(format_args!("help: {}", hinted.help));
-    }
+    talk(said(error));
     Verdict::Failed
+}
+
+/// A failure in words, with the next step on a line of its own.
+pub fn said(error: &anyhow::Error) -> String {
+    let next = error.downcast_ref::<Hinted>();
+    let next = next.map_or(String::new(), |hinted| format!("\nhelp: {}", hinted.help));
+    format!("error: {}{next}", one_line(error))
 }
 
 fn write(stream: &mut impl Write, text: impl Display) -> io::Result<()> {

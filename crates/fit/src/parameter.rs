@@ -218,7 +218,8 @@ impl Parameter {
     }
 
     /// Keys of a scene file for it, and for the standard deviation of its logarithm.
-    pub(crate) fn scene_keys(self) -> Option<[[&'static str; 2]; 2]> {
+    #[must_use]
+    pub fn scene_keys(self) -> Option<[[&'static str; 2]; 2]> {
         let keys = match self {
             Self::MuS => (["support", "friction"], "mu_s"),
             Self::MuP => (["pusher", "friction"], "mu_p"),

@@ -225,25 +225,30 @@ function follow() {
   player.root.scrollIntoView();
 }
 
-for (const part of document.querySelectorAll(".part, .summary")) {
-  const figures = [...part.querySelectorAll("figure")].filter((figure) => figure.querySelector(".panel"));
-  const player = players.find(({ root }) => part.contains(root));
-  // figures of one experiment share their times; others stand for themselves
-  for (const group of player ? [figures] : figures.map((figure) => [figure])) if (group.length > 0) new Timeline(group, player);
+/** Joins the figures of a part of the page with its players. */
+function joinFigures(root) {
+  for (const part of root.querySelectorAll(".part, .summary")) {
+    const figures = [...part.querySelectorAll("figure")].filter((figure) => figure.querySelector(".panel"));
+    const player = players.find(({ root }) => part.contains(root));
+    // figures of one experiment share their times; others stand for themselves
+    for (const group of player ? [figures] : figures.map((figure) => [figure])) if (group.length > 0) new Timeline(group, player);
+  }
+  for (const [k, figure] of root.querySelectorAll("figure").entries()) {
+    const caption = figure.querySelector("figcaption") ?? put(figure, "figcaption");
+    const button = put(caption, "button", "save", "SVG");
+    button.title = "save the figure as an SVG file";
+    button.addEventListener("click", () => {
+      const picture = figure.querySelector("svg.figure").cloneNode(true);
+      picture.querySelectorAll(".cursor").forEach((line) => line.remove());
+      const link = document.createElement("a");
+      link.href = URL.createObjectURL(new Blob([picture.outerHTML], { type: "image/svg+xml" }));
+      link.download = `figure-${k + 1}.svg`;
+      link.click();
+      URL.revokeObjectURL(link.href);
+    });
+  }
 }
-for (const [k, figure] of document.querySelectorAll("figure").entries()) {
-  const caption = figure.querySelector("figcaption") ?? put(figure, "figcaption");
-  const button = put(caption, "button", "save", "SVG");
-  button.title = "save the figure as an SVG file";
-  button.addEventListener("click", () => {
-    const picture = figure.querySelector("svg.figure").cloneNode(true);
-    picture.querySelectorAll(".cursor").forEach((line) => line.remove());
-    const link = document.createElement("a");
-    link.href = URL.createObjectURL(new Blob([picture.outerHTML], { type: "image/svg+xml" }));
-    link.download = `figure-${k + 1}.svg`;
-    link.click();
-    URL.revokeObjectURL(link.href);
-  });
-}
+
+joinFigures(document);
 addEventListener("hashchange", follow);
 follow();

@@ -49,6 +49,7 @@ class Player {
     this.slider = this.find("input[type=range]");
     this.playing = null;
     this.guesser = this.data.methods.find((method) => method.contact);
+    root.classList.toggle("bare", this.data.methods.length === 0);
     this.drawStage();
     this.drawStrip();
     this.fillReadout();
@@ -68,9 +69,12 @@ class Player {
     for (let x = Math.ceil(left / 10) * 10 - 200; x < left + width + 200; x += 10) grid += `M${x} ${low - 200}v${height + 400}`;
     for (let y = Math.ceil(low / 10) * 10 - 200; y < low + height + 200; y += 10) grid += `M${left - 200} ${y}h${width + 400}`;
     add(world, "path", { d: grid, class: "grid" });
-    const trail = data.truth.x.flatMap((x, row) => (x === null ? [] : [`${x / 100} ${data.truth.y[row] / 100}`]));
-    if (trail.length > 1) add(world, "path", { d: `M${trail.join("L")}`, class: "trail" });
+    for (const way of data.feet.length > 0 ? [data.truth, data.pusherPose] : [data.truth]) {
+      const trail = way.x.flatMap((x, row) => (x === null ? [] : [`${x / 100} ${way.y[row] / 100}`]));
+      if (trail.length > 1) add(world, "path", { d: `M${trail.join("L")}`, class: "trail" });
+    }
     this.truth = addBody(world, data.object, "truth");
+    for (const [x, y] of data.feet) add(this.truth, "circle", { cx: x / 100, cy: y / 100, r: 0.06 * data.reach, class: "foot" });
     add(this.truth, "path", { d: "M-3 0H3M0 -3V3", class: "line" });
     this.clouds = data.methods.map((method) => {
       const group = add(world, "g", { class: "cloud" });
@@ -213,7 +217,8 @@ class Player {
       else return;
       event.preventDefault();
     });
-    addEventListener("resize", () => this.arrangeMarks());
+    // which ends with the player, where another takes its place
+    new ResizeObserver(() => this.arrangeMarks()).observe(strip);
   }
 
   /** Time shown (s). */
@@ -319,4 +324,12 @@ class Player {
   }
 }
 
-const players = [...document.querySelectorAll(".player:not(.live)")].map((root) => new Player(root));
+/** The players of the page. */
+const players = [];
+
+/** Begins the players of a part of the page, which take the place of those before. */
+function beginPlayers(root) {
+  players.splice(0, Infinity, ...[...root.querySelectorAll(".player:not(.live)")].map((player) => new Player(player)));
+}
+
+beginPlayers(document);

@@ -37,6 +37,7 @@ mod terms;
 mod thinning;
 mod time_figure;
 mod touch;
+mod view_page;
 
 pub use axis::Scale;
 pub use cloud_sample::CloudSample;
@@ -59,3 +60,4 @@ pub use sentences::{Fate, Outcome, Sentence, verdicts};
 pub use strip::{StripGroup, StripLane, StripPlot};
 pub use table::{Table, number};
 pub use time_figure::{Bars, Curve, Level, Panel, TimeFigure};
+pub use view_page::view_page;

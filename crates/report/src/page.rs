@@ -21,7 +21,7 @@ const ESCAPED: &AsciiSet = &NON_ALPHANUMERIC
     .remove(b'_');
 
 pub(crate) const SCRIPT: &str = include_str!("../page/player.js");
-const FIGURES: &str = include_str!("../page/figures.js");
+pub(crate) const FIGURES: &str = include_str!("../page/figures.js");
 
 /// A page with a summary on top.
 #[derive(Clone, Debug, Default)]
@@ -74,6 +74,19 @@ pub enum Block {
 }
 
 impl Report {
+    /// A player and nothing else.
+    #[must_use]
+    pub fn player(playback: Playback) -> Self {
+        let section = Section {
+            title: String::new(),
+            blocks: vec![Block::Playback(Box::new(playback))],
+        };
+        Self {
+            sections: vec![section],
+            ..Self::default()
+        }
+    }
+
     /// The page as HTML text, with styles, fonts, figures, data and script in it.
     #[must_use]
     pub fn to_html(&self) -> String {
@@ -88,9 +101,7 @@ impl Report {
                 body {
                     main {
                         h1 { (self.title) }
-                        @if !self.summary.is_empty() { div class="summary" { @for block in &self.summary { (block.html()) } } }
-                        (self.contents())
-                        @for section in &self.sections { (section.html()) }
+                        (self.body())
                         @if !self.origin.is_empty() {
                             footer { h2 { "How this page was made" } dl { @for (name, value) in &self.origin { dt { (name) } dd { (value) } } } }
                         }
@@ -100,6 +111,20 @@ impl Report {
             }
         };
         page.into_string()
+    }
+
+    /// Summary and sections as HTML text, for a page that has the styles and scripts.
+    #[must_use]
+    pub fn to_part(&self) -> String {
+        self.body().into_string()
+    }
+
+    fn body(&self) -> Markup {
+        html! {
+            @if !self.summary.is_empty() { div class="summary" { @for block in &self.summary { (block.html()) } } }
+            (self.contents())
+            @for section in &self.sections { (section.html()) }
+        }
     }
 
     /// Links to the sections, where there are several.

@@ -31,6 +31,8 @@ pub struct Playback {
     pub poster: usize,
     /// The object in its own frame (m).
     pub object: Outline,
+    /// The object's feet in its frame (m), to be drawn; none where they are not.
+    pub feet: Vec<[f64; 2]>,
     /// The pusher and a hand's other fingers, each in its own frame (m).
     pub fingers: Vec<Outline>,
     /// The fixels in the world (m).
@@ -137,6 +139,7 @@ impl Playback {
             focus: 0..log.len(),
             poster: log.len().saturating_sub(1),
             object: Outline::new(&scene.object.shape),
+            feet: Vec::new(),
             fingers: scene.pusher.fingers.iter().map(Outline::new).collect(),
             fixels: scene
                 .fixels
@@ -208,9 +211,18 @@ impl Playback {
         } else {
             ""
         };
+        let estimates = match self.runs.is_empty() {
+            true => "",
+            false => " Coloured outlines: estimates",
+        };
+        let feet = match self.feet.is_empty() {
+            true => "",
+            false => " Small circles: its feet. Dotted lines: ways of object and pusher.",
+        };
         let particles = match self.runs.iter().any(has_cloud) {
-            true => "; thin ones: particles",
-            false => "",
+            true => "; thin ones: particles.",
+            false if self.runs.is_empty() => "",
+            false => ".",
         };
         let rims = match self.runs.iter().any(knows_contacts) {
             true => " Rims turn yellow with the estimated probability of contact.",
@@ -224,7 +236,7 @@ impl Playback {
             ),
         };
         format!(
-            "Filled: the {}, dashed while the camera is off. Coloured outlines: estimates{particles}.{yellow}{rims}{every}",
+            "Filled: the {}, dashed while the camera is off.{estimates}{particles}{feet}{yellow}{rims}{every}",
             self.reference_name
         )
     }

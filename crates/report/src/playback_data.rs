@@ -58,6 +58,7 @@ pub(crate) fn data(playback: &Playback) -> Value {
         "view": view(playback),
         "reach": reach,
         "object": body(&playback.object),
+        "feet": playback.feet.iter().map(|foot| foot.map(|x| whole(x, LENGTH))).collect::<Vec<_>>(),
         "fingers": playback.fingers.iter().map(body).collect::<Vec<_>>(),
         "fixels": playback.fixels.iter().map(body).collect::<Vec<_>>(),
         "truth": poses(&playback.reference, rows.clone()),

@@ -272,6 +272,17 @@ impl<'a> ReportedExperiment<'a> {
         }
     }
 
+    /// The experiment without runs, as it was measured, with the object's feet.
+    #[must_use]
+    pub fn scene_playback(&self) -> Playback {
+        let scene = &self.setup.scene;
+        let feet = scene.feet_at(0.0, &scene.nominal, 1.0);
+        Playback {
+            feet: feet.map(|foot| foot.arm).to_vec(),
+            ..self.playback()
+        }
+    }
+
     /// Runs that figures show: those of [`Variant::DRAWN`] if there are more runs than these.
     pub(crate) fn drawn(&self) -> impl Iterator<Item = &ReportedRun> {
         let all = self.runs.len() <= Variant::DRAWN.len();

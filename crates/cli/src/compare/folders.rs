@@ -105,7 +105,7 @@ fn stray_file(file: &Path, scene_name: &str) -> anyhow::Error {
 
 /// A folder with a log or a scene of its own means to be an experiment, even if the other is
 /// missing.
-fn is_experiment(folder: &Path, scenes: Scenes<'_>) -> bool {
+pub fn is_experiment(folder: &Path, scenes: Scenes<'_>) -> bool {
     let scene = matches!(scenes, Scenes::Named(name) if folder.join(name).is_file());
     scene || is_bag(folder) || log_path(folder).is_file()
 }

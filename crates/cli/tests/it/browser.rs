@@ -6,6 +6,7 @@
 #[path = "../../../report/tests/it/browser/chromium.rs"]
 mod chromium;
 mod tab;
+mod view;
 
 use std::io::Write;
 use std::process::ChildStdin;

@@ -31,3 +31,4 @@ mod reproduce;
 #[cfg(feature = "camera")]
 mod ros2;
 mod simulate;
+mod view_page;

@@ -16,6 +16,8 @@ pub struct Tab {
     /// Name of the page in the protocol.
     page: Option<String>,
     asked: u64,
+    /// Messages of the page to its console, and its errors.
+    pub console: Vec<Value>,
 }
 
 impl Tab {
@@ -53,6 +55,7 @@ impl Tab {
             socket,
             page: None,
             asked: 0,
+            console: Vec::new(),
         };
         let target = tab.ask("Target.createTarget", json!({"url": "about:blank"}));
         let target = json!({"targetId": target["targetId"], "flatten": true});
@@ -61,6 +64,9 @@ impl Tab {
         let window =
             json!({"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": false});
         tab.ask("Emulation.setDeviceMetricsOverride", window);
+        for domain in ["Runtime.enable", "Log.enable"] {
+            tab.ask(domain, json!({}));
+        }
         tab.ask("Page.navigate", json!({"url": address}));
         tab
     }
@@ -74,6 +80,17 @@ impl Tab {
             "{expression}: {told:#}"
         );
         told["result"]["value"].take()
+    }
+
+    /// Chooses files in the page's file input.
+    pub fn choose_files(&mut self, files: &[&str]) {
+        let root = self.ask("DOM.getDocument", json!({}))["root"]["nodeId"].take();
+        let input = json!({"nodeId": root, "selector": "input[type=file]"});
+        let input = self.ask("DOM.querySelector", input)["nodeId"].take();
+        self.ask(
+            "DOM.setFileInputFiles",
+            json!({"nodeId": input, "files": files}),
+        );
     }
 
     fn ask(&mut self, method: &str, parameters: Value) -> Value {
@@ -93,6 +110,14 @@ impl Tab {
             if answer["id"] == self.asked {
                 assert!(answer.get("error").is_none(), "{method}: {answer:#}");
                 return answer["result"].take();
+            }
+            let told = [
+                "Runtime.consoleAPICalled",
+                "Runtime.exceptionThrown",
+                "Log.entryAdded",
+            ];
+            if told.iter().any(|told| answer["method"] == *told) {
+                self.console.push(answer);
             }
         }
     }

@@ -1,8 +1,10 @@
-//! `stickslip live --page` as a test runs it: [`Session`].
+//! `stickslip live --page` or `stickslip view` as a test runs it: [`Session`].
 
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpStream;
-use std::process::{Child, ChildStderr, ChildStdin, Stdio};
+use std::process::{Child, ChildStderr, ChildStdin, Command, Stdio};
+
+use serde_json::Value;
 
 use super::{Experiment, stickslip};
 
@@ -23,6 +25,17 @@ impl Session {
     pub fn start(case: &Experiment) -> Self {
         let mut command = stickslip();
         command.args(["live", &case.scene(), "--particles", "64", "--page"]);
+        Self::of(command)
+    }
+
+    /// Starts `stickslip view`.
+    pub fn view(folders: &[&str]) -> Self {
+        let mut command = stickslip();
+        command.arg("view").args(folders);
+        Self::of(command)
+    }
+
+    fn of(mut command: Command) -> Self {
         let pipes = command
             .stdin(Stdio::piped())
             .stdout(Stdio::null())
@@ -65,11 +78,32 @@ impl Session {
         String::from_utf8_lossy(&answer).into_owned()
     }
 
+    /// Answer to a question of the page, or its refusal.
+    pub fn post(&self, what: &str, question: &Value) -> Result<String, String> {
+        let body = question.to_string();
+        let length = body.len();
+        let answer = self.ask(&format!(
+            "POST /{what}?TOKEN HTTP/1.1\nHost: HOST\nOrigin: http://HOST\nContent-Length: {length}\n\n{body}"
+        ));
+        let (_, text) = answer.split_once("\r\n\r\n").unwrap();
+        let mut said: Value = serde_json::from_str(text).unwrap();
+        let [answer, error] = ["answer", "error"].map(|key| said[key].take());
+        let text = |of: Value| of.as_str().map(str::to_owned);
+        text(answer).ok_or_else(|| text(error).unwrap())
+    }
+
     /// Ends the source: exit code.
     pub fn end(mut self) -> Option<i32> {
         drop(self.input.take());
         let mut told = String::new();
         self.errors.read_to_string(&mut told).unwrap();
         self.child.wait().unwrap().code()
+    }
+}
+
+impl Drop for Session {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
     }
 }

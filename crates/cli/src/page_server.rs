@@ -1,23 +1,29 @@
-//! The live page: a server on the loopback address, for one page and its WebSocket: [`PageServer`].
+//! A server on the loopback address, for one page, its WebSocket and what it asks: [`PageServer`].
+
+mod head;
+mod notices;
 
 use std::collections::BTreeMap;
-use std::io::{self, BufRead, BufReader, Read, Write};
+use std::io::{self, BufReader, Read, Write, copy, sink};
 use std::net::{Ipv4Addr, Shutdown, TcpListener, TcpStream};
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex};
 use std::thread;
 use std::time::{Duration, Instant};
 
+use anyhow::Result;
 use serde_json::json;
 use tungstenite::handshake::server::{ErrorResponse, Request, Response};
 use tungstenite::http::StatusCode;
 use tungstenite::protocol::WebSocketConfig;
 use tungstenite::{Message, WebSocket, accept_hdr_with_config};
 
-/// Least time between two rows that are shown: 30 a second are seen.
-const PERIOD: Duration = Duration::from_millis(33);
+use crate::failure::hinted;
+use crate::output::{said, talk};
+use head::Head;
+pub use notices::{Notices, lock};
 
-/// Most pages that are shown rows at a time.
+/// Most pages that are shown messages at a time.
 const MOST_VIEWERS: usize = 8;
 
 /// Most connections that have not shown the token yet; a further one ends the oldest.
@@ -26,11 +32,11 @@ const MOST_STRANGERS: usize = 32;
 /// Time that a client may take for its whole request and the answer, and a page for a row.
 const PATIENCE: Duration = Duration::from_secs(5);
 
+/// Time that a client that has shown the token may take to send files.
+const PATIENCE_WITH_FILES: Duration = Duration::from_secs(60);
+
 /// Age of a row from which on a new page is given it.
 const OLD: Duration = Duration::from_secs(2);
-
-/// Time between checks of a page to which nothing is sent: it may be gone.
-const LOOK: Duration = Duration::from_secs(1);
 
 /// Most messages that are taken from a page at a time; it has nothing to say.
 const MOST_MESSAGES: usize = 64;
@@ -38,26 +44,30 @@ const MOST_MESSAGES: usize = 64;
 /// Longest message of a page (bytes).
 const LONGEST_MESSAGE: usize = 4 << 10;
 
-/// Longest head of a request (bytes).
-const LONGEST_HEAD: usize = 16 << 10;
+/// Most that a page sends at once (MB).
+pub const LARGEST_BODY_MB: u64 = 64;
+
+/// Answers what a page asks: the name of the question, its text, and where messages are shown.
+pub type Answers = dyn Fn(&str, &[u8], &Notices) -> Result<String> + Send + Sync;
 
 /// Serves the page until the program ends.
 pub struct PageServer {
     shared: Arc<Shared>,
+    /// The page's address, token included.
     address: String,
-    shown: Option<Instant>,
 }
 
 /// State that the threads of the connections share.
 struct Shared {
     page: String,
+    /// Absent for a page that asks nothing.
+    answers: Option<Box<Answers>>,
     /// End of the page's address.
     token: String,
     port: u16,
     viewers: AtomicUsize,
     strangers: Mutex<Strangers>,
-    newest: Mutex<Newest>,
-    changed: Condvar,
+    notices: Notices,
 }
 
 /// Connections that have not shown the token yet, by their numbers.
@@ -65,14 +75,6 @@ struct Shared {
 struct Strangers {
     latest: u64,
     streams: BTreeMap<u64, TcpStream>,
-}
-
-/// The newest message, its number, and when it came.
-#[derive(Default)]
-struct Newest {
-    number: u64,
-    text: Arc<str>,
-    came: Option<Instant>,
 }
 
 /// A client's stream, on which everything ends at a deadline.
@@ -83,19 +85,19 @@ struct Patient {
 
 impl PageServer {
     /// Listens at a port of the loopback address, 0 for any that is free.
-    pub fn start(page: String, port: u16) -> io::Result<Self> {
+    fn start(page: String, answers: Option<Box<Answers>>, port: u16) -> io::Result<Self> {
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port))?;
         let port = listener.local_addr()?.port();
         let token = token()?;
         let address = format!("http://127.0.0.1:{port}/?{token}");
         let shared = Arc::new(Shared {
             page,
+            answers,
             token,
             port,
             viewers: AtomicUsize::new(0),
             strangers: Mutex::new(Strangers::default()),
-            newest: Mutex::new(Newest::default()),
-            changed: Condvar::new(),
+            notices: Notices::default(),
         });
         let served = shared.clone();
         thread::spawn(move || {
@@ -103,34 +105,29 @@ impl PageServer {
                 serve_aside(&served, stream);
             }
         });
-        Ok(Self {
-            shared,
-            address,
-            shown: None,
-        })
+        Ok(Self { shared, address })
     }
 
-    /// The page's address, token included.
-    pub fn address(&self) -> &str {
-        &self.address
+    /// Messages to the pages that are open.
+    pub fn notices(&self) -> &Notices {
+        &self.shared.notices
     }
+}
 
-    /// Returns true if a row should be shown now: the last one was some time ago. It is shown
-    /// without a page, too, so that one that is opened while the source is silent has something to
-    /// show.
-    pub fn wants(&self) -> bool {
-        self.shown.is_none_or(|shown| shown.elapsed() >= PERIOD)
-    }
-
-    /// Shows a message to all pages that are open; those that are busy drop the one before.
-    pub fn show(&mut self, text: String) {
-        let mut newest = lock(&self.shared.newest);
-        self.shown = Some(Instant::now());
-        newest.number += 1;
-        newest.text = text.into();
-        newest.came = self.shown;
-        self.shared.changed.notify_all();
-    }
+/// Starts a server and prints its address. Another port is named as in `example`.
+pub fn serve(
+    page: String,
+    answers: Option<Box<Answers>>,
+    (port, example): (u16, &str),
+) -> Result<PageServer> {
+    let server = PageServer::start(page, answers, port).map_err(|error| {
+        hinted(
+            format!("the page cannot be served at port {port}: {error}"),
+            format!("name another port, as {example}, or none"),
+        )
+    })?;
+    talk(format_args!("open {}", server.address));
+    Ok(server)
 }
 
 /// 128 random bits in hexadecimal digits.
@@ -138,10 +135,6 @@ fn token() -> io::Result<String> {
     let mut bytes = [0_u8; 16];
     getrandom::fill(&mut bytes).map_err(io::Error::other)?;
     Ok(bytes.iter().map(|byte| format!("{byte:02x}")).collect())
-}
-
-fn lock<T>(shared: &Mutex<T>) -> MutexGuard<'_, T> {
-    shared.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Serves one connection on a thread of its own.
@@ -224,7 +217,7 @@ impl Shared {
         if &start == b"GET /socket?" {
             self.serve_socket(stream, number)
         } else {
-            self.serve_page(stream, number)
+            self.serve_request(stream, number)
         }
     }
 
@@ -236,37 +229,83 @@ impl Shared {
             && query == Some(self.token.as_str())
     }
 
-    fn serve_page(&self, mut stream: Patient, number: u64) -> io::Result<()> {
-        let mut lines = BufReader::new(Read::take(&mut stream, LONGEST_HEAD as u64)).lines();
-        let request = lines.next().transpose()?.unwrap_or_default();
-        let heads = lines
-            .map_while(Result::ok)
-            .take_while(|line| !line.is_empty());
-        let heads: Vec<String> = heads.collect();
-        let host = heads.iter().find_map(|line| {
-            let (name, value) = line.split_once(':')?;
-            name.eq_ignore_ascii_case("host").then_some(value.trim())
-        });
-        let query = request
-            .strip_prefix("GET /?")
-            .and_then(|rest| rest.split(' ').next());
-        let (status, body) = match self.allows(host, query) {
-            true => {
-                self.is_no_stranger(number);
-                ("200 OK", self.page.as_str())
-            }
-            false => (
+    fn serve_request(&self, stream: Patient, number: u64) -> io::Result<()> {
+        let mut reader = BufReader::new(stream);
+        let head = Head::read(&mut reader);
+        let known = self.allows(head.field("host"), head.query());
+        if known {
+            self.is_no_stranger(number);
+            reader.get_mut().deadline = Instant::now() + PATIENCE_WITH_FILES;
+        }
+        let (status, body) = match (head.method(), &self.answers) {
+            _ if !known => (
                 "403 Forbidden",
-                "The address is the one that the program printed.\n",
+                "This is not the address that the program printed. Open that one.\n".to_owned(),
             ),
+            ("GET", _) if head.path() == "" => ("200 OK", self.page.clone()),
+            ("POST", Some(answers)) => self.answer(&head, &mut reader, answers.as_ref())?,
+            _ => ("403 Forbidden", "This page asks nothing.\n".to_owned()),
         };
         // in one piece, so that a client's first look shows how it went
+        let kind = if head.method() == "GET" {
+            "html"
+        } else {
+            "plain"
+        };
         let answer = format!(
-            "HTTP/1.1 {status}\r\nContent-Type: text/html; charset=utf-8\r\nContent-Length: {}\r\n\
-             Cache-Control: no-store\r\nReferrer-Policy: no-referrer\r\nX-Frame-Options: DENY\r\nConnection: close\r\n\r\n{body}",
+            "HTTP/1.1 {status}\r\nContent-Type: text/{kind}; charset=utf-8\r\nContent-Length: {}\r\n\
+             Cache-Control: no-store\r\nReferrer-Policy: no-referrer\r\nX-Frame-Options: DENY\r\n\
+             X-Content-Type-Options: nosniff\r\nConnection: close\r\n\r\n{body}",
             body.len()
         );
-        stream.write_all(answer.as_bytes())
+        if known {
+            reader.get_mut().deadline = Instant::now() + PATIENCE;
+        }
+        reader.get_mut().write_all(answer.as_bytes())?;
+        // a client that still sends would not read the answer; what it sends is not kept
+        reader.get_ref().stream.shutdown(Shutdown::Write)?;
+        copy(&mut reader, &mut sink()).map(drop)
+    }
+
+    /// Status and answer to a question of the page.
+    fn answer(
+        &self,
+        head: &Head,
+        reader: &mut BufReader<Patient>,
+        answers: &Answers,
+    ) -> io::Result<(&'static str, String)> {
+        let origin = head.field("origin");
+        if !self.allows(
+            origin.and_then(|origin| origin.strip_prefix("http://")),
+            head.query(),
+        ) {
+            let origin = origin.unwrap_or("no page");
+            let text = format!(
+                "The question comes from {origin}. Only the page of this program is answered.\n"
+            );
+            return Ok(("403 Forbidden", text));
+        }
+        let Some(length) = head
+            .field("content-length")
+            .and_then(|length| length.parse().ok())
+        else {
+            let text = "The request does not say its length. Send Content-Length.\n".to_owned();
+            return Ok(("411 Length Required", text));
+        };
+        if length > LARGEST_BODY_MB * 1_000_000 {
+            let text = too_large(length);
+            return Ok(("413 Content Too Large", text));
+        }
+        let mut body = Vec::new();
+        if reader.take(length).read_to_end(&mut body)? as u64 != length {
+            return Err(io::ErrorKind::UnexpectedEof.into());
+        }
+        // a status of an error would stand in the browser's console
+        let answer = match answers(head.path(), &body, &self.notices) {
+            Ok(text) => json!({ "answer": text }),
+            Err(error) => json!({ "error": said(&error) }),
+        };
+        Ok(("200 OK", answer.to_string()))
     }
 
     fn serve_socket(&self, stream: Patient, number: u64) -> io::Result<()> {
@@ -302,17 +341,9 @@ impl Shared {
         let mut seen = 0;
         while is_open(socket)? {
             let is_first = seen == 0;
-            let (text, age) = {
-                let newest = lock(&self.newest);
-                let waited = self
-                    .changed
-                    .wait_timeout_while(newest, LOOK, |newest| newest.number == seen);
-                let (newest, _) = waited.unwrap_or_else(PoisonError::into_inner);
-                let is_new = newest.number != seen;
-                seen = newest.number;
-                let age = newest.came.map_or(Duration::ZERO, |came| came.elapsed());
-                (is_new.then(|| newest.text.clone()), age)
-            };
+            let (number, text, age) = self.notices.after(seen);
+            let text = (number != seen).then_some(text);
+            seen = number;
             socket.get_mut().deadline = Instant::now() + PATIENCE;
             if let Some(text) = text {
                 let text = Message::text(&*text);
@@ -326,6 +357,15 @@ impl Shared {
         }
         Ok(())
     }
+}
+
+/// The answer to files that are too large together (bytes).
+fn too_large(length: u64) -> String {
+    format!(
+        "error: these files have {} MB; the page takes at most {LARGEST_BODY_MB} MB\n\
+         help: put them into a folder, and run `stickslip view FOLDER`",
+        length / 1_000_000
+    )
 }
 
 /// Takes a page's messages, without waiting for more; false where it has gone.
