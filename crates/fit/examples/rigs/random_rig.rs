@@ -102,7 +102,7 @@ impl RandomRig {
 fn simulated(setup: &Setup, physics: Physics, seed: u64) -> Option<(stickslip::Log, TruthFacts)> {
     let options = SimulationOptions {
         physics,
-        seed,
+        seeds: seed.into(),
         rate: 30.0,
         repeats: 0.0,
         pusher_memory: PUSHER_MEMORY,
