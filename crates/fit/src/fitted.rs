@@ -160,7 +160,7 @@ pub(crate) fn fit_prepared<'a>(
     let posterior = Posterior::new(pushes.to_vec(), &options.parameters, progress)?;
     let streams = Streams::new(options.seed);
 
-    let (chain, sampled) = sample(&posterior, SETTLED, streams);
+    let (chain, sampled) = sample(&posterior, &|mean| posterior.power(mean), SETTLED, streams);
     let covariance = chain.covariance();
     let free = options.parameters.len();
     let means = chain.means();

@@ -4,6 +4,8 @@
 //! of the object and the recorded pusher alone. Several populations that cool from the prior sample
 //! the posterior; [`cross_validate`] gives the accuracy of the fit on pushes that it has not seen.
 
+#[cfg(test)]
+mod calibration;
 mod chain;
 mod coarsening;
 mod doubts;

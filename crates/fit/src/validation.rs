@@ -9,7 +9,7 @@ use stickslip_formats::{Experiment, TruthFacts};
 
 use crate::error::FitError;
 use crate::fitted::{Fit, FitOptions, fit_prepared, prepare};
-use crate::likelihood::{FREEDOM, Noise, STRAY_FACTOR, STRAY_SHARE, drift_std};
+use crate::likelihood::{Noise, STRAY_FACTOR, STRAY_SHARE, drift_std, student};
 use crate::posterior::Posterior;
 use crate::progress::{Listener, Progress};
 use crate::push::{PreparedPush, Push};
@@ -290,12 +290,4 @@ fn covered(
         let [low, high] = INTERVAL.map(|q| quantile(&errors, q).expect("there are samples"));
         low <= 0.0 && 0.0 <= high
     })
-}
-
-/// A number of Student's t distribution with [`FREEDOM`] degrees of freedom.
-fn student(draw: Draw, number: u32, first: u32) -> f64 {
-    let degrees = FREEDOM as u32;
-    let squares = (1..=degrees).map(|k| draw.normal(number, first + k));
-    let chi_squared: f64 = squares.map(|x| x * x).sum();
-    draw.normal(number, first) / (chi_squared / FREEDOM).sqrt()
 }
