@@ -28,5 +28,5 @@ pub use likelihood::Noise;
 pub use parameter::Parameter;
 pub use prior::Prior;
 pub use progress::Listener;
-pub use push::Push;
+pub use push::{Push, by_object};
 pub use validation::{CrossValidation, HeldOut, cross_validate, default_folds, predict};
