@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +17,7 @@ from stickslip._columns import Columns, Log
 from stickslip._files import Topics, experiments, load_log, load_scene, log_of, scene_of
 from stickslip._native import Error, Scene
 from stickslip._options import Progress
+from stickslip._page import Page
 from stickslip._simulate import Simulation
 
 #: A push: its experiment folder, a simulation, or a scene and a log.
@@ -25,7 +26,7 @@ Push = str | os.PathLike[str] | Simulation | tuple[Scene | str | os.PathLike[str
 
 @dataclass(frozen=True)
 class Fit:
-    """Result of :func:`fit`."""
+    """Result of :func:`fit`. A notebook shows the :meth:`page`."""
 
     #: Names of the parameters, in the order of all arrays; ``pusher_offset`` and the like are two,
     #: x and y.
@@ -55,6 +56,14 @@ class Fit:
     result: dict[str, Any]
     #: Reasons to doubt the fit, each with the push that it is about.
     warnings: tuple[str, ...]
+    _page: str = field(repr=False, compare=False)
+
+    def page(self) -> Page:
+        """Returns the page of ``stickslip fit --report``."""
+        return Page(self._page)
+
+    def _repr_html_(self) -> str:
+        return self.page()._repr_html_()
 
 
 def fit(
@@ -69,6 +78,8 @@ def fit(
     progress: Progress | None = None,
 ) -> Fit:
     """Learns unknown scene parameters from many pushes of one object on one table.
+
+    Pushes of several objects are refused: the program's ``stickslip fit`` deals them by object.
 
     ``pushes``: at least two pushes, as experiment folders (``scene.toml``, ``log.csv`` or
     ``log.mcap``), folders of such folders, results of :func:`stickslip.simulate`, or pairs of a
@@ -93,7 +104,7 @@ def fit(
         "folds": folds,
         "threads": threads,
     }
-    learnt, validation, draws, text, warnings = _native.fit(
+    learnt, validation, draws, text, warnings, page = _native.fit(
         [(f"push {k}" if name is None else name, scene, log) for k, (name, scene, log) in enumerate(read)],
         options,
         progress,
@@ -118,6 +129,7 @@ def fit(
         scene=Scene(text, read[0][1].name),
         result=result,
         warnings=tuple(warnings),
+        _page=page,
     )
 
 

@@ -51,6 +51,8 @@ def simulate(
     *,
     physics: Literal["testbed", "model"] = "testbed",
     seed: int = 0,
+    rig_seed: int | None = None,
+    noise_seed: int | None = None,
     rate: float = 30.0,
     friction: Mapping[str, float] | None = None,
     progress: Progress | None = None,
@@ -58,8 +60,10 @@ def simulate(
     """Simulates the experiment that the scene's ``[start]`` describes.
 
     ``physics``: ``testbed``, a rig with compliant contacts, uneven friction and a lagging drive, or
-    ``model``, the filter's own contact dynamics without noise. ``rate``: frames per second (Hz).
-    ``friction``: true ``mu_s``, ``mu_p``, ``mu_f``, ``d_tri`` (m); the scene's values by default.
+    ``model``, the filter's own contact dynamics without noise. ``seed``: of all random numbers;
+    ``rig_seed`` of the rig alone, ``noise_seed`` of the sensors' noise alone. ``rate``: frames per
+    second (Hz). ``friction``: true ``mu_s``, ``mu_p``, ``mu_f``, ``d_tri`` (m); the scene's values
+    by default.
     ``progress``: gets the finished frames and all frames.
     """
     true = dict(friction or {})
@@ -71,7 +75,8 @@ def simulate(
         known,
         {
             "physics": physics,
-            "seed": seed,
+            "rig_seed": seed if rig_seed is None else rig_seed,
+            "noise_seed": seed if noise_seed is None else noise_seed,
             "rate": rate,
             "mu_s": true.get("mu_s"),
             "mu_p": true.get("mu_p"),

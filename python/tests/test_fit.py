@@ -75,6 +75,20 @@ def test_numbers_are_those_of_the_program(fitted, folder, program):
     assert fitted.result == of_folders.result
 
 
+def test_a_notebook_shows_the_page_of_the_program(fitted):
+    page = fitted.page()
+    assert "<title>Fit to 4 pushes</title>" in page and "Predictions of pushes left out" in page
+    assert page.count("predicted - measured (mm)") >= 2
+    assert "srcdoc" in fitted._repr_html_()
+    assert "_page" not in repr(fitted)
+
+
+def test_pushes_of_two_objects_are_refused(pushes):
+    heavy = pushes[1].scene.text.replace("mass = 0.5", "mass = 0.7")
+    with pytest.raises(stickslip.Error, match="push 1 has another object than push 0"):
+        stickslip.fit([pushes[0], (stickslip.Scene(heavy), pushes[1].log)])
+
+
 def test_pairs_of_a_scene_and_a_log_are_pushes_too(pushes, fitted):
     pairs = [(push.scene, push.log) for push in pushes]
     assert stickslip.fit(pairs, ["mu_p", "mu_f"]).values == fitted.values

@@ -38,6 +38,14 @@ def test_a_simulation_is_that_of_the_program(program, scene, tmp_path, physics):
     assert json.loads((theirs / "truth.json").read_text()) == ours.facts
 
 
+def test_one_rig_has_many_noises(scene):
+    first, other = (stickslip.simulate(scene, seed=4, noise_seed=seed) for seed in (4, 5))
+    np.testing.assert_array_equal(first.truth["x"], other.truth["x"])
+    assert not np.array_equal(first.log["x"], other.log["x"])
+    rig = stickslip.simulate(scene, rig_seed=5, noise_seed=4)
+    assert not np.array_equal(first.truth["x"], rig.truth["x"])
+
+
 def test_true_friction_is_what_was_asked_for(scene):
     ours = stickslip.simulate(scene, physics="model", friction={"mu_s": 0.2})
     assert ours.facts["mu_s"] == 0.2

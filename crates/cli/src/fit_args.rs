@@ -11,8 +11,8 @@ use crate::topic_args::TopicArgs;
 /// Arguments of `stickslip fit`.
 #[derive(Debug, Args)]
 pub struct FitArgs {
-    /// Experiment folders (scene.toml, a log), or folders of such folders: pushes of one object on
-    /// one table
+    /// Experiment folders (scene.toml, a log), or folders of such folders; each object is fitted on
+    /// its own
     #[arg(required = true, value_name = "DIR")]
     pub folders: Vec<PathBuf>,
     /// Free parameters, of mu_s, mu_p, mu_f, tripod_radius, centre_of_friction, support,
@@ -20,7 +20,7 @@ pub struct FitArgs {
     /// leaves open of the support]
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     pub free: Vec<String>,
-    /// Folder for scene.toml and fit.json
+    /// Folder for scene.toml and fit.json, or for a folder of each object with these
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
     /// File for a report (HTML)
@@ -47,7 +47,7 @@ pub struct FitArgs {
     /// How many threads
     #[command(flatten)]
     pub threads: ThreadArgs,
-    /// Print one JSON object, the content of fit.json
+    /// Print the content of fit.json, of several objects as a list
     #[arg(long)]
     pub json: bool,
 }

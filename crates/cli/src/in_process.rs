@@ -1,12 +1,14 @@
 //! Services of the program for callers in this process: files of logs, with what the program would
 //! write to standard error ([`read_log_at`], [`bag_info`], [`log_files`], [`check_occlusion`],
-//! [`check_sense`]), and its pages ([`run_page`], [`run_player`], [`comparison_page`]).
+//! [`check_sense`]), and its pages ([`run_page`], [`run_player`], [`comparison_page`],
+//! [`fit_page`]).
 
 use std::path::{Path, PathBuf};
 
 use anyhow::Result;
 use stickslip::{Log, Occlusion, Setup};
 use stickslip_evaluation::{ScoredRun, Variant};
+use stickslip_fit::{CrossValidation, Fit};
 use stickslip_formats::{BagOptions, Experiment, LogWarning};
 use stickslip_report::{Report, ReportedExperiment, ReportedRun};
 
@@ -15,6 +17,7 @@ pub use crate::compare::{ComparedRun, ShownScores};
 use crate::experiment;
 use crate::failure::{Hinted, one_line};
 use crate::filter;
+use crate::fit;
 use crate::info::Shown;
 use crate::log_files::{LogFiles, topic_hint};
 
@@ -99,6 +102,16 @@ pub fn run_player(experiment: &Experiment, scored: ScoredRun, occlusion: Occlusi
 /// The page of `stickslip compare --report` about runs, without players.
 pub fn comparison_page(runs: &[ComparedRun], particles: usize) -> String {
     compare::page_of(runs, particles).to_html()
+}
+
+/// The page of `stickslip fit --report` about a fit.
+pub fn fit_page(
+    fit: &Fit,
+    cross_validation: Option<&CrossValidation>,
+    warnings: &[String],
+    seed: u64,
+) -> String {
+    fit::page_of(fit, cross_validation, warnings, seed).to_html()
 }
 
 /// The compared method of a name, as in the JSON of `stickslip compare`.

@@ -2,14 +2,14 @@
 //! truth.json.
 
 use std::io::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 use stickslip::Setup;
 use stickslip::diagnosis::assumed_stall_force;
 use stickslip_evaluation::paper::{PaperExperiment, PaperScene};
 use stickslip_evaluation::{
-    PUSHER_MEMORY, REPEATS, Simulation, SimulationError, SimulationOptions,
+    PUSHER_MEMORY, REPEATS, Seeds, Simulation, SimulationError, SimulationOptions,
 };
 use stickslip_formats::{
     TruthFacts, read_scene, read_truth_json, write_log, write_truth_csv, write_truth_json,
@@ -34,32 +34,51 @@ struct Source {
 
 /// Runs the command.
 pub fn simulate(args: &SimulateArgs) -> Result<Verdict> {
-    refuse_recorded(&args.out)?;
+    let all = wanted(args);
+    all.iter().try_for_each(|(_, out)| refuse_recorded(out))?;
     let source = source(args)?;
     let setup = read_scene(&source.scene, &source.name)?;
-    let known = match args.friction_error {
-        Some(share) => misjudged(&setup, share, args.seed),
-        None => source.known,
-    };
-    let options = SimulationOptions {
-        physics: args.physics.into(),
-        seed: args.seed,
-        rate: args.rate,
-        repeats: REPEATS,
-        pusher_memory: PUSHER_MEMORY,
-    };
-    let simulation = Simulation::run(&setup, &known, &options, &mut |_, _| ())
-        .map_err(|error| refused(error, &source.name))?;
-    write(&args.out, &source.scene, &simulation)?;
-    show(tables(&source.name, &setup, &simulation))?;
-    if simulation.trace.unsolved > 0 {
-        talk(format_args!(
-            "warning: {} without a certified solution",
-            counted(simulation.trace.unsolved as u64, "step")
-        ));
+    for (k, (seeds, out)) in all.iter().enumerate() {
+        let known = match args.friction_error {
+            Some(share) => misjudged(&setup, share, seeds.rig),
+            None => source.known.clone(),
+        };
+        let options = SimulationOptions {
+            physics: args.physics.into(),
+            seeds: *seeds,
+            rate: args.rate,
+            repeats: REPEATS,
+            pusher_memory: PUSHER_MEMORY,
+        };
+        let simulation = Simulation::run(&setup, &known, &options, &mut |_, _| ())
+            .map_err(|error| refused(error, &source.name))?;
+        write(out, &source.scene, &simulation)?;
+        if k == 0 {
+            // of the others, only the noise differs
+            show(tables(&source.name, &setup, &simulation))?;
+        }
+        if simulation.trace.unsolved > 0 {
+            talk(format_args!(
+                "warning: {} without a certified solution",
+                counted(simulation.trace.unsolved as u64, "step")
+            ));
+        }
+        talk(format_args!("wrote {}", out.display()));
     }
-    talk(format_args!("wrote {}", args.out.display()));
     Ok(Verdict::Done)
+}
+
+/// Seeds and folder of each simulation.
+fn wanted(args: &SimulateArgs) -> Vec<(Seeds, PathBuf)> {
+    let [rig, noise] = [args.rig_seed, args.noise_seed].map(|seed| seed.unwrap_or(args.seed));
+    let Some(count) = args.count else {
+        return vec![(Seeds { rig, noise }, args.out.clone())];
+    };
+    let seeds = (0..count).map(|k| noise.wrapping_add(k));
+    let folder = |noise| args.out.join(format!("noise-{noise}"));
+    seeds
+        .map(|noise| (Seeds { rig, noise }, folder(noise)))
+        .collect()
 }
 
 /// Names the scene, and says what to change in it where that is known.

@@ -22,12 +22,22 @@ pub struct SimulateArgs {
     /// Folder for scene.toml, log.csv, truth.csv and truth.json
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
+    /// Simulate N times with noise seeds from --noise-seed on; each has a folder below --out,
+    /// noise-SEED
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=10_000))]
+    pub count: Option<u64>,
     /// Simulator
     #[arg(long, value_enum, default_value_t = PhysicsName::Testbed)]
     pub physics: PhysicsName,
     /// Seed of all random numbers, of rig and sensors
     #[arg(long, default_value_t = 0)]
     pub seed: u64,
+    /// Seed of the rig alone: its pressure, table, drive, and --friction-error [default: --seed]
+    #[arg(long, value_name = "SEED")]
+    pub rig_seed: Option<u64>,
+    /// Seed of the sensors' noise alone [default: --seed]
+    #[arg(long, value_name = "SEED")]
+    pub noise_seed: Option<u64>,
     /// Camera frames per second
     #[arg(long, value_name = "HZ", default_value_t = 30.0, value_parser = positive)]
     pub rate: f64,

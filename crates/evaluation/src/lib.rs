@@ -17,7 +17,7 @@ pub use learned_friction::{LearnedParameter, LearningFriction};
 pub use run::{RunConditions, ScoredRun};
 pub use score::{Reference, Scores, score};
 pub use simulation::{
-    PUSHER_MEMORY, Physics, REPEATS, Simulation, SimulationError, SimulationOptions,
+    PUSHER_MEMORY, Physics, REPEATS, Seeds, Simulation, SimulationError, SimulationOptions,
 };
 pub use statistics::{Band, Direction, PairedDifference};
 pub use stickslip::quantile;

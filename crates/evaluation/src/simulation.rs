@@ -28,13 +28,32 @@ pub enum Physics {
     Model,
 }
 
+/// Seeds of a simulation. The noise of one rig is independent from that of another seed; one number
+/// serves both, as `Seeds::from(7)`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Seeds {
+    /// Of the testbed's rig: pressure, friction of the table, errors of the drive.
+    pub rig: u64,
+    /// Of the sensors: camera, touch, force.
+    pub noise: u64,
+}
+
+impl From<u64> for Seeds {
+    fn from(seed: u64) -> Self {
+        Self {
+            rig: seed,
+            noise: seed,
+        }
+    }
+}
+
 /// Options of a simulation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SimulationOptions {
     /// Source of the object's motion.
     pub physics: Physics,
-    /// Seed of everything that is random.
-    pub seed: u64,
+    /// Seeds of everything that is random.
+    pub seeds: Seeds,
     /// Frames per second (Hz).
     pub rate: f64,
     /// Share of frames that the frame grabber repeats, 0 to 1.
@@ -100,7 +119,7 @@ impl Simulation {
             scene: &setup.scene,
             start: setup.start.as_ref().ok_or(SimulationError::NoStart)?,
             rate: options.rate,
-            seed: options.seed,
+            seed: options.seeds.rig,
         };
         if options.physics == Physics::Testbed && setup.scene.pusher.stall_force.is_none() {
             return Err(SimulationError::RigidDrive);
@@ -108,6 +127,7 @@ impl Simulation {
         let friction = friction(setup, known);
         let touch = TouchSensors {
             threshold: setup.tactile.touch_force,
+            seed: Some(options.seeds.noise),
             ..TouchSensors::default()
         };
 
@@ -127,12 +147,12 @@ impl Simulation {
         }?;
 
         // what is measured of it, and what is true
-        let measurements = tracker(setup, options).measure(&trace, options.seed);
+        let measurements = tracker(setup, options).measure(&trace, options.seeds.noise);
         Ok(Self {
             log: Log {
-                force: setup
-                    .wrench
-                    .map_or_else(Vec::new, |sensor| forces(&trace, &sensor, options.seed)),
+                force: setup.wrench.map_or_else(Vec::new, |sensor| {
+                    forces(&trace, &sensor, options.seeds.noise)
+                }),
                 ..log(&trace, &measurements)
             },
             truth: truth(&trace),
@@ -246,7 +266,12 @@ fn others(trace: &Trace) -> impl Iterator<Item = Body> {
 }
 
 fn facts(trace: &Trace, known: &TruthFacts, options: &SimulationOptions) -> TruthFacts {
-    let SimulationOptions { physics, seed, .. } = options;
+    let SimulationOptions { physics, seeds, .. } = options;
+    let Seeds { rig, noise } = seeds;
+    let seeds = match rig == noise {
+        true => format!("seed {rig}"),
+        false => format!("rig seed {rig}, noise seed {noise}"),
+    };
     let lead = (BLACKOUT_LEAD * options.rate).round() as usize;
     // a hand hides the object from before its first touch on
     let hand = others(trace).any(|body| matches!(body, Body::Finger(_)));
@@ -255,10 +280,7 @@ fn facts(trace: &Trace, known: &TruthFacts, options: &SimulationOptions) -> Trut
     let first = first.filter_map(|body| trace.first_contact(body)).min();
     let before_contact = first.map(|row| row.saturating_sub(lead));
     TruthFacts {
-        source: Some(format!(
-            "stickslip simulate, {}, seed {seed}",
-            physics.name()
-        )),
+        source: Some(format!("stickslip simulate, {}, {seeds}", physics.name())),
         mu_s: Some(trace.friction.mu_s),
         mu_p: Some(trace.friction.mu_p),
         mu_f: Some(trace.friction.mu_f),

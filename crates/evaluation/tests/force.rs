@@ -36,7 +36,7 @@ fn simulated(wrench: Option<ForceSensor>, seed: u64) -> Log {
     setup.wrench = wrench;
     let options = SimulationOptions {
         physics: Physics::Model,
-        seed,
+        seeds: seed.into(),
         rate: 30.0,
         repeats: 0.0,
         pusher_memory: 0.0,

@@ -19,10 +19,10 @@ start   = { object = [0, 0, 0], pusher = [-0.1, -0.024, 0], speed = [[0, 0], [0.
 #[test]
 fn a_jam_holds_in_the_belief_while_the_pusher_stands() {
     let setup = read_scene(SCENE, "scene.toml").expect("a scene");
-    for seed in 0..4 {
+    for seed in 0..4_u64 {
         let options = SimulationOptions {
             physics: Physics::Testbed,
-            seed,
+            seeds: seed.into(),
             rate: 30.0,
             repeats: REPEATS,
             pusher_memory: PUSHER_MEMORY,

@@ -29,7 +29,7 @@ fn logged(seed: u64) -> Experiment {
     let setup = read_scene(&scene(feet), "feet.toml").expect("a scene");
     let options = SimulationOptions {
         physics: Physics::Model,
-        seed,
+        seeds: seed.into(),
         rate: 30.0,
         repeats: REPEATS,
         pusher_memory: PUSHER_MEMORY,

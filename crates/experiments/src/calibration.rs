@@ -161,7 +161,7 @@ fn simulated(setup: &Setup, seed: u64, physics: Physics) -> Option<KnownExperime
     };
     let options = SimulationOptions {
         physics,
-        seed,
+        seeds: seed.into(),
         rate: 30.0,
         repeats: REPEATS,
         pusher_memory: PUSHER_MEMORY,

@@ -76,6 +76,17 @@ pub enum FitError {
         /// Name of the parameter.
         parameter: &'static str,
     },
+    /// The pushes are of several objects.
+    #[error(
+        "{second} has another object than {first}: its scene has another outline, mass, inertia or feet. \
+         Fit the pushes of one object at a time, or make the scenes agree"
+    )]
+    SeveralObjects {
+        /// A push of the first object.
+        first: String,
+        /// A push of another.
+        second: String,
+    },
     /// Two scenes start from different guesses.
     #[error(
         "{parameter} is {a} (spread {a_spread}) in the scene of {first} and {b} (spread {b_spread}) in that of {second}; \

@@ -12,7 +12,7 @@ use crate::parameter::Parameter;
 use crate::posterior::{Posterior, noise_of};
 use crate::prior::Prior;
 use crate::progress::{Listener, Progress};
-use crate::push::{PreparedPush, Push};
+use crate::push::{PreparedPush, Push, by_object};
 use crate::sampler::{most_sampled, sample};
 
 /// Posterior over prior standard deviation below which a parameter counts as determined.
@@ -127,6 +127,10 @@ pub(crate) fn prepare(
     pushes: &[Push],
     progress: &Progress<'_>,
 ) -> Result<(Vec<PreparedPush>, Vec<String>), FitError> {
+    if let [first, second, ..] = &by_object(pushes)[..] {
+        let [first, second] = [first, second].map(|object| pushes[object[0]].name.clone());
+        return Err(FitError::SeveralObjects { first, second });
+    }
     let (mut ready, mut left_out) = (Vec::new(), Vec::new());
     for push in pushes {
         progress.show();
@@ -160,7 +164,7 @@ pub(crate) fn fit_prepared<'a>(
     let posterior = Posterior::new(pushes.to_vec(), &options.parameters, progress)?;
     let streams = Streams::new(options.seed);
 
-    let (chain, sampled) = sample(&posterior, SETTLED, streams);
+    let (chain, sampled) = sample(&posterior, &|mean| posterior.power(mean), SETTLED, streams);
     let covariance = chain.covariance();
     let free = options.parameters.len();
     let means = chain.means();

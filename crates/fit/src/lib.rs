@@ -4,6 +4,8 @@
 //! of the object and the recorded pusher alone. Several populations that cool from the prior sample
 //! the posterior; [`cross_validate`] gives the accuracy of the fit on pushes that it has not seen.
 
+#[cfg(test)]
+mod calibration;
 mod chain;
 mod coarsening;
 mod doubts;
@@ -26,5 +28,5 @@ pub use likelihood::Noise;
 pub use parameter::Parameter;
 pub use prior::Prior;
 pub use progress::Listener;
-pub use push::Push;
+pub use push::{Push, by_object};
 pub use validation::{CrossValidation, HeldOut, cross_validate, default_folds, predict};

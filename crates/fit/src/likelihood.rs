@@ -12,9 +12,10 @@
 //! four times as much.
 
 use serde::Serialize;
+use stickslip_filter::Draw;
 
 /// Degrees of freedom of innovations.
-pub(crate) const FREEDOM: f64 = 5.0;
+const FREEDOM: f64 = 5.0;
 
 /// Share of pushes that drift more than the others.
 pub(crate) const STRAY_SHARE: f64 = 0.1;
@@ -135,6 +136,43 @@ pub(crate) fn log_likelihood(
     let stray = of(&stray) + libm::log(STRAY_SHARE);
     let most = plain.max(stray);
     most + libm::log1p(libm::exp(plain.min(stray) - most))
+}
+
+/// Residuals of one push, drawn from this likelihood: [`log_likelihood`] is their density.
+#[cfg(test)]
+pub(crate) fn drawn_residuals(
+    travelled: &[f64],
+    noise: &Noise,
+    camera: [f64; 2],
+    memory: f64,
+    draw: Draw,
+) -> Vec<[f64; 3]> {
+    let stray = draw.uniform(0, 0) < STRAY_SHARE;
+    let noise = Noise {
+        drift: if stray { STRAY_FACTOR } else { 1.0 } * noise.drift,
+        ..*noise
+    };
+    let mut residuals = vec![[0.0; 3]; travelled.len()];
+    for (k, axis) in axes(&noise, camera, memory).iter().enumerate() {
+        let (mut state, mut before) = (axis.start(), 0.0);
+        for (row, (way, residual)) in travelled.iter().zip(&mut residuals).enumerate() {
+            axis.advance(&mut state, way - before);
+            before = *way;
+            let spread = (state.covariance[0] + axis.measured).sqrt();
+            let first = 1 + 16 * k as u32;
+            residual[k] = state.mean[0] + spread * student(draw, 1 + row as u32, first);
+            axis.observe(&mut state, residual[k]);
+        }
+    }
+    residuals
+}
+
+/// A number of Student's t distribution with [`FREEDOM`] degrees of freedom.
+pub(crate) fn student(draw: Draw, number: u32, first: u32) -> f64 {
+    let degrees = FREEDOM as u32;
+    let squares = (1..=degrees).map(|k| draw.normal(number, first + k));
+    let chi_squared: f64 = squares.map(|x| x * x).sum();
+    draw.normal(number, first) / (chi_squared / FREEDOM).sqrt()
 }
 
 /// Standard deviations of how far each axis of a prediction (m) has drifted after `travelled` (m),

@@ -30,6 +30,32 @@ pub struct Push {
     pub log: Log,
 }
 
+impl Push {
+    /// Returns true if both are pushes of one object: outline, mass, moment of inertia and feet
+    /// are equal in their scenes.
+    fn is_of_object_of(&self, other: &Self) -> bool {
+        let [one, other] = [self, other].map(|push| &push.setup.scene);
+        let [a, b] = [one, other].map(|scene| (scene.object.mass, scene.object.inertia));
+        let [shape, other_shape] = [one, other].map(|scene| scene.object.shape.parts());
+        a == b && shape == other_shape && one.feet == other.feet
+    }
+}
+
+/// The pushes of each object, as indices; objects are in the order of their first pushes. Two
+/// pushes have one object if outline, mass, moment of inertia and feet are equal in their scenes.
+#[must_use]
+pub fn by_object(pushes: &[Push]) -> Vec<Vec<usize>> {
+    let mut objects: Vec<Vec<usize>> = Vec::new();
+    for (k, push) in pushes.iter().enumerate() {
+        let known = |object: &&mut Vec<usize>| push.is_of_object_of(&pushes[object[0]]);
+        match objects.iter_mut().find(known) {
+            Some(object) => object.push(k),
+            None => objects.push(vec![k]),
+        }
+    }
+    objects
+}
+
 /// A push with all that no parameter changes.
 #[derive(Clone, Debug)]
 pub(crate) struct PreparedPush {

@@ -71,13 +71,18 @@ struct Populations<'a> {
     moves: u64,
 }
 
-/// Samples `posterior`: populations drawn from the prior cool to the power of the likelihood that
-/// their own drift deserves. Then they move until the second half of their ways agrees, by
+/// Samples `posterior`: populations drawn from the prior cool to the `power` of the likelihood that
+/// their mean deserves. Then they move until the second half of their ways agrees, by
 /// `settled` as split R̂, or for the most rounds. Also the number of vectors tried.
-pub(crate) fn sample(posterior: &Posterior<'_>, settled: f64, streams: Streams) -> (Chain, u64) {
+pub(crate) fn sample(
+    posterior: &Posterior<'_>,
+    power: &dyn Fn(&[f64]) -> f64,
+    settled: f64,
+    streams: Streams,
+) -> (Chain, u64) {
     let mut populations = Populations::from_prior(posterior, streams);
     for stage in 1..=MOST_STAGES {
-        let end = posterior.power(&populations.mean());
+        let end = power(&populations.mean());
         if populations.power >= end {
             break;
         }

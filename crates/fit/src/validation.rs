@@ -9,7 +9,7 @@ use stickslip_formats::{Experiment, TruthFacts};
 
 use crate::error::FitError;
 use crate::fitted::{Fit, FitOptions, fit_prepared, prepare};
-use crate::likelihood::{FREEDOM, Noise, STRAY_FACTOR, STRAY_SHARE, drift_std};
+use crate::likelihood::{Noise, STRAY_FACTOR, STRAY_SHARE, drift_std, student};
 use crate::posterior::Posterior;
 use crate::progress::{Listener, Progress};
 use crate::push::{PreparedPush, Push};
@@ -53,6 +53,8 @@ pub struct HeldOut {
     /// Final position error of the unfitted scene, and of the median prediction of the posterior
     /// (mm).
     pub final_mm: [f64; 2],
+    /// Predicted minus measured position of both at the last measured pose (mm), x and y.
+    pub final_offset_mm: [[f64; 2]; 2],
     /// WMSE over all rows of both (mm).
     pub wmse_mm: [f64; 2],
     /// True for each of x, y and θ whose last measured value lies in the 90 % interval predicted
@@ -129,6 +131,7 @@ pub fn predict(
         let mut predicted = predict_held_out(&prepared, k, 0, fit, options, &unseen)?;
         if refused {
             predicted.final_mm[1] = predicted.final_mm[0];
+            predicted.final_offset_mm[1] = predicted.final_offset_mm[0];
             predicted.wmse_mm[1] = predicted.wmse_mm[0];
         }
         Ok(predicted)
@@ -189,7 +192,9 @@ fn predict_held_out(
     fit.apply(&mut fitted)?;
     let mut estimate = nominal_estimate(push, unfitted)?;
     let of_unfitted = scores(push, unfitted, &estimate);
-    for (row, pose) in estimate.rows.iter_mut().zip(median_poses(&predictions)) {
+    let unfitted_offset_mm = final_offset_mm(push, &estimate);
+    let rows = estimate.rows.iter_mut().skip(push.predictor.first);
+    for (row, pose) in rows.zip(median_poses(&predictions)) {
         row.pose = Some(pose);
     }
     let of_fitted = scores(push, &fitted, &estimate);
@@ -202,6 +207,7 @@ fn predict_held_out(
         push: push.push.name.clone(),
         fold,
         final_mm: of(|scores| scores.final_error_mm),
+        final_offset_mm: [unfitted_offset_mm, final_offset_mm(push, &estimate)],
         wmse_mm: of(|scores| scores.wmse_mm),
         covered: covered(push, &posterior, &fit.samples, &predictions, draw),
     })
@@ -238,6 +244,13 @@ fn median_poses(predictions: &[NominalPrediction]) -> Vec<Pose> {
         )
     };
     (0..predictions[0].poses.len()).map(median).collect()
+}
+
+/// Estimated minus measured position at the last measured pose (mm).
+fn final_offset_mm(push: &PreparedPush, estimate: &Estimate) -> [f64; 2] {
+    let (row, measured) = push.measured.last().expect("a prepared push has a pose");
+    let estimated = estimate.rows[*row].pose.unwrap_or(*measured);
+    [estimated.x - measured.x, estimated.y - measured.y].map(|metres| 1e3 * metres)
 }
 
 /// Scores of an estimate against the measured poses, as `setup` understands them.
@@ -290,12 +303,4 @@ fn covered(
         let [low, high] = INTERVAL.map(|q| quantile(&errors, q).expect("there are samples"));
         low <= 0.0 && 0.0 <= high
     })
-}
-
-/// A number of Student's t distribution with [`FREEDOM`] degrees of freedom.
-fn student(draw: Draw, number: u32, first: u32) -> f64 {
-    let degrees = FREEDOM as u32;
-    let squares = (1..=degrees).map(|k| draw.normal(number, first + k));
-    let chi_squared: f64 = squares.map(|x| x * x).sum();
-    draw.normal(number, first) / (chi_squared / FREEDOM).sqrt()
 }

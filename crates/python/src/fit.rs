@@ -30,8 +30,15 @@ pub struct Arguments {
 type PushArguments<'py> = (String, Bound<'py, Scene>, Bound<'py, PyDict>);
 
 /// The fit and its cross-validation as in fit.json, draws by name, the first scene's text with the
-/// values in place, and reasons to doubt the fit.
-type Fitted<'py> = (String, String, Bound<'py, PyDict>, String, Vec<String>);
+/// values in place, reasons to doubt the fit, and the page about it.
+type Fitted<'py> = (
+    String,
+    String,
+    Bound<'py, PyDict>,
+    String,
+    Vec<String>,
+    String,
+);
 
 /// Learns from pushes of one object on one table.
 #[pyfunction]
@@ -79,12 +86,14 @@ pub fn fit<'py>(
     let text = fit.scene_text(&scene.get().text, &scene.get().name, validation.as_ref());
     let warnings = doubts(&pushes, &fit);
     warn(py, &warnings)?;
+    let page = stickslip_cli::fit_page(&fit, validation.as_ref(), &warnings, options.seed);
     Ok((
         json(&fit)?,
         json(&validation)?,
         to_dict(py, columns.collect())?,
         text.map_err(refused)?,
         warnings,
+        page,
     ))
 }
 

@@ -2,7 +2,7 @@
 
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use stickslip_evaluation::{PUSHER_MEMORY, Physics, REPEATS, Simulation, SimulationOptions};
+use stickslip_evaluation::{PUSHER_MEMORY, Physics, REPEATS, Seeds, Simulation, SimulationOptions};
 use stickslip_formats::{TruthFacts, log_columns, truth_columns, write_truth_json};
 
 use crate::columns::to_dict;
@@ -17,7 +17,8 @@ use crate::threads::Threads;
 #[pyo3(from_item_all)]
 pub struct Arguments {
     physics: String,
-    seed: u64,
+    rig_seed: u64,
+    noise_seed: u64,
     rate: f64,
     mu_s: Option<f64>,
     mu_p: Option<f64>,
@@ -47,7 +48,10 @@ pub fn simulate<'py>(
     };
     let options = SimulationOptions {
         physics: physics(&options.physics)?,
-        seed: options.seed,
+        seeds: Seeds {
+            rig: options.rig_seed,
+            noise: options.noise_seed,
+        },
         rate: options.rate,
         repeats: REPEATS,
         pusher_memory: PUSHER_MEMORY,

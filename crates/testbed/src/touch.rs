@@ -20,6 +20,8 @@ pub struct TouchSensors {
     pub dropouts: f64,
     /// Mean length of a dropout (s).
     pub dropout_time: f64,
+    /// Seed of chatter and dropouts; `None`: the trial's.
+    pub seed: Option<u64>,
 }
 
 impl Default for TouchSensors {
@@ -30,6 +32,7 @@ impl Default for TouchSensors {
             relative_noise: 0.1,
             dropouts: 0.3,
             dropout_time: 0.1,
+            seed: None,
         }
     }
 }
@@ -37,7 +40,7 @@ impl Default for TouchSensors {
 impl TouchSensors {
     /// Writes every frame's readings.
     pub(crate) fn write_readings(&self, frames: &mut [Frame], trial: &Trial<'_>) {
-        let streams = Streams::new(trial.seed).of(Purpose::Measure);
+        let streams = Streams::new(self.seed.unwrap_or(trial.seed)).of(Purpose::Measure);
         let dropout_probability = 1.0 - libm::exp(-self.dropouts / trial.rate);
         let mut silent_until = vec![0.0; trial.scene.sensors()];
         for (k, frame) in frames.iter_mut().enumerate() {

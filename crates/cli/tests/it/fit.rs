@@ -116,6 +116,83 @@ fn fit_writes_a_scene_that_filters_and_keeps_its_comments() {
 }
 
 #[test]
+fn objects_are_fitted_on_their_own() {
+    let folder = pushes("fit-objects", 4);
+    let pushes = folder.join("pushes");
+    let named = |k: usize, name: &str| {
+        let to = pushes.join(name);
+        fs::rename(pushes.join(format!("push-{k}")), &to).unwrap();
+        to
+    };
+    named(0, "plate_08");
+    named(1, "plate_10");
+    // a heavier plate moves the same way
+    for (k, name) in [(2, "heavy_1"), (3, "heavy_2")] {
+        let scene = named(k, name).join("scene.toml");
+        let text = fs::read_to_string(&scene).unwrap();
+        let heavier = text.replace(
+            "mass = 0.5, inertia = 3.3e-4",
+            "mass = 1.0, inertia = 6.6e-4",
+        );
+        fs::write(&scene, heavier).unwrap();
+    }
+    let options = ["--free", "mu_p", "--folds", "0"];
+    let out = folder.join("out");
+    let run = succeeds(
+        fit(&pushes, &out)
+            .args(options)
+            .arg("--report")
+            .arg(out.join("fit.html")),
+    );
+    let told = String::from_utf8(run.stdout).unwrap();
+    for words in [
+        "Fit to 2 pushes of heavy\n",
+        "Fit to 2 pushes of plate\n",
+        "object",
+        "heavy ",
+    ] {
+        assert!(told.contains(words), "{words} in {told}");
+    }
+    let page = fs::read_to_string(out.join("fit.html")).unwrap();
+    assert!(page.contains("Fits of 2 objects") && page.contains("plate: fitted parameters"));
+
+    // each has the numbers of a call of its own
+    for (name, folders) in [
+        ("heavy", ["heavy_1", "heavy_2"]),
+        ("plate", ["plate_08", "plate_10"]),
+    ] {
+        let [one, other] = folders.map(|push| pushes.join(push));
+        let alone = folder.join("alone").join(name);
+        succeeds(fit(&one, &alone).arg(other).args(options));
+        let read = |out: &Path| -> serde_json::Value {
+            serde_json::from_str(&fs::read_to_string(out.join("fit.json")).unwrap()).unwrap()
+        };
+        let (mut together, alone_json) = (read(&out.join(name)), read(&alone));
+        assert_eq!(
+            together.as_object_mut().unwrap().remove("object").unwrap(),
+            name
+        );
+        assert_eq!(together, alone_json);
+        let scene = |out: &Path| fs::read_to_string(out.join("scene.toml")).unwrap();
+        assert_eq!(scene(&out.join(name)), scene(&alone));
+    }
+    assert!(!out.join("fit.json").exists());
+
+    // one push of an object is too few, found before any fit
+    fs::remove_dir_all(pushes.join("plate_08")).unwrap();
+    let run = fit(&pushes, &folder.join("none"))
+        .args(options)
+        .output()
+        .unwrap();
+    let told = String::from_utf8(run.stderr).unwrap();
+    assert!(
+        told.contains("plate_10: 1 push given; at least 2"),
+        "{told}"
+    );
+    assert!(!folder.join("none").exists());
+}
+
+#[test]
 fn fit_refuses_with_the_next_step() {
     let folder = pushes("fit-refuses", 2);
     let (pushes, out) = (folder.join("pushes"), folder.join("out"));

@@ -100,6 +100,74 @@ fn simulation_gives_the_same_bytes_for_the_same_seed_only() {
     assert!(bytes("a") != bytes("c"));
 }
 
+/// Compares the bytes of files in two folders.
+fn same(one: &Path, other: &Path, files: &[&str]) -> bool {
+    let read = |folder: &Path, file: &str| fs::read(folder.join(file)).unwrap();
+    files
+        .iter()
+        .all(|file| read(one, file) == read(other, file))
+}
+
+#[test]
+fn rig_seed_keeps_the_rig_and_noise_seed_the_noise() {
+    // a fixel with a touch sensor, whose chatter is noise
+    let folder = folder("simulate_seeds", SCENE);
+    let drawn = ["--friction-error", "0.3"];
+    for (out, seeds) in [
+        ("plain", ["--seed", "7", "--rate", "30"]),
+        ("same", ["--rig-seed", "7", "--noise-seed", "7"]),
+        ("noise", ["--rig-seed", "7", "--noise-seed", "8"]),
+        ("rig", ["--rig-seed", "8", "--noise-seed", "7"]),
+    ] {
+        succeeds(simulate(&folder, out, &seeds).args(drawn));
+    }
+    let at = |out: &str| folder.join(out);
+    let all = ["log.csv", "truth.csv", "truth.json"];
+    assert!(same(&at("plain"), &at("same"), &all));
+
+    // another noise leaves the motion and the friction, another rig neither
+    assert!(same(&at("plain"), &at("noise"), &["truth.csv"]));
+    assert!(!same(&at("plain"), &at("noise"), &["log.csv"]));
+    let [plain, noise, rig] = ["plain", "noise", "rig"].map(|out| facts(&folder, out));
+    for key in ["mu_s", "mu_p", "mu_f", "d_tri"] {
+        assert!(plain[key] == noise[key] && plain[key] != rig[key], "{key}");
+    }
+    // the error of a frame's camera is that of its noise seed
+    let error = |out: &str| {
+        let x = |file: &str| -> f64 {
+            let text = fs::read_to_string(at(out).join(file)).unwrap();
+            let cell = text.lines().nth(1).unwrap().split(',').nth(1).unwrap();
+            cell.parse().unwrap()
+        };
+        x("log.csv") - x("truth.csv")
+    };
+    assert!((error("plain") - error("rig")).abs() < 1e-12);
+    assert!((error("plain") - error("noise")).abs() > 1e-6);
+}
+
+#[test]
+fn many_simulations_in_a_call_are_those_of_single_calls() {
+    let folder = folder("simulate_count", SCENE);
+    let seeds = ["--rig-seed", "3", "--noise-seed"];
+    let many = ["11", "--count", "3"];
+    succeeds(simulate(&folder, "many", &seeds).args(many));
+    for noise in ["11", "12", "13"] {
+        let out = format!("one-{noise}");
+        succeeds(simulate(&folder, &out, &seeds).arg(noise));
+        let many = folder.join("many").join(format!("noise-{noise}"));
+        let files = ["scene.toml", "log.csv", "truth.csv", "truth.json"];
+        assert!(same(&many, &folder.join(out), &files));
+    }
+    assert_eq!(fs::read_dir(folder.join("many")).unwrap().count(), 3);
+
+    // a log that is there is found before anything is simulated
+    let run = simulate(&folder, "many", &["--noise-seed", "13", "--count", "2"])
+        .output()
+        .unwrap();
+    assert_eq!(run.status.code(), Some(1));
+    assert!(!folder.join("many/noise-14").exists());
+}
+
 #[test]
 fn rate_and_truth_are_taken_where_they_are_given() {
     let folder = folder("simulate_truth", SCENE);

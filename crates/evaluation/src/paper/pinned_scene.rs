@@ -107,7 +107,7 @@ impl PinnedScene {
         };
         let options = SimulationOptions {
             physics: Physics::Testbed,
-            seed: self.seed,
+            seeds: self.seed.into(),
             rate: RATE,
             repeats: REPEATS,
             pusher_memory: PUSHER_MEMORY,

@@ -119,7 +119,7 @@ impl Replicate {
         adjust(&mut setup);
         let options = SimulationOptions {
             physics: Physics::Testbed,
-            seed,
+            seeds: seed.into(),
             rate: RATE,
             repeats,
             pusher_memory,

@@ -2,8 +2,9 @@
 //! of the 90 % intervals of the constants:
 //! `cargo run --release -p stickslip-fit --example rigs -- face 0 60`.
 //!
-//! The first word is the support of the rigs: `tripod` (the model's own physics), `face` or `feet`
-//! (the testbed's). Numbers are the first rig and how many.
+//! The first word is the support of the rigs: `tripod` (the model's own physics), `prior` (the same
+//! with feet that the fit's prior draws), `face` or `feet` (the testbed's). Numbers are the first
+//! rig and how many.
 //!
 //! Free is what is free by default: μ_p and the support.
 
@@ -15,13 +16,11 @@ use stickslip_fit::{Fit, FitOptions, FittedParameter, Parameter, fit};
 /// Numbers of pushes, rig by rig.
 const PUSHES: [usize; 4] = [4, 6, 8, 12];
 
-/// Comparison of a fitted value and its constant with the truth, in logarithms.
+/// Comparison of a fitted value and its constant with the truth, in whitened coordinates.
 struct Outcome {
+    name: &'static str,
     error: f64,
     spread: f64,
-    std_ratio: f64,
-    /// Half the width of its 90 % interval.
-    half_width: f64,
     held: bool,
     /// Share of the posterior's draws below the truth.
     rank: f64,
@@ -31,6 +30,7 @@ fn main() {
     let mut arguments = std::env::args().skip(1);
     let support = match arguments.next().as_deref() {
         Some("tripod") => Support::Tripod,
+        Some("prior") => Support::Prior,
         Some("feet") => Support::ThreeFeet,
         _ => Support::Face,
     };
@@ -41,10 +41,8 @@ fn main() {
             .unwrap_or(default)
     };
     let (first, count): (u64, u64) = (number(0), number(60));
-    let mut outcomes: [Vec<Outcome>; 2] = Default::default();
-    println!(
-        "rig pushes drift R-hat, then of mu_p and tripod_radius: error spread spread/prior half-width held"
-    );
+    let mut outcomes: Vec<Vec<Outcome>> = Vec::new();
+    println!("rig pushes drift R-hat, then of each parameter, over its prior: error spread held");
     for seed in first..first + count {
         let rig = RandomRig::new(support, seed, PUSHES[seed as usize % PUSHES.len()]);
         let options = FitOptions {
@@ -52,45 +50,44 @@ fn main() {
             seed: 0,
         };
         let fit = fit(&rig.pushes, &options, &|_, _| ()).expect("a fit");
-        let of_rig = compared(&fit, [rig.mu_p, rig.d_tri]);
+        let of_rig = compared(&fit, &rig.truth);
         println!(
             "{seed} {} {:.5} {:.3} {}",
             fit.pushes,
             fit.noise.drift,
             fit.sampling.split_rhat,
-            of_rig.each_ref().map(line).join(" ")
+            of_rig.iter().map(line).collect::<Vec<_>>().join(" ")
         );
+        outcomes.resize_with(of_rig.len(), Vec::new);
         for (all, one) in outcomes.iter_mut().zip(of_rig) {
             all.push(one);
         }
     }
-    for (name, outcomes) in ["mu_p", "tripod_radius"].into_iter().zip(&outcomes) {
-        println!("{name}: {}", summary(outcomes));
+    for outcomes in &outcomes {
+        println!("{}", summary(outcomes));
     }
 }
 
-fn compared(fit: &Fit, truths: [f64; 2]) -> [Outcome; 2] {
-    std::array::from_fn(|k| {
-        let (truth, fitted): (f64, &FittedParameter) = (truths[k], &fit.parameters[k]);
-        let (_, draws) = &fit.draws()[k];
-        let below = draws.iter().filter(|draw| **draw < truth).count();
+fn compared(fit: &Fit, truths: &[f64]) -> Vec<Outcome> {
+    let draws = fit.draws();
+    let of_parameters = truths.iter().zip(&fit.parameters).zip(&draws);
+    let compared = |((truth, fitted), (_, draws)): ((&f64, &FittedParameter), &(_, Vec<f64>))| {
+        let below = draws.iter().filter(|draw| *draw < truth).count();
         let [low, high] = fitted.interval_90;
+        let coordinate = |value| fitted.prior.coordinate(value);
         Outcome {
-            error: libm::log(fitted.value / truth),
-            spread: fitted.std / fitted.value,
-            std_ratio: fitted.std_ratio,
-            half_width: 0.5 * libm::log(high / low),
-            held: (low..=high).contains(&truth),
+            name: fitted.name,
+            error: coordinate(fitted.value) - coordinate(*truth),
+            spread: fitted.std_ratio,
+            held: (low..=high).contains(truth),
             rank: below as f64 / draws.len() as f64,
         }
-    })
+    };
+    of_parameters.map(compared).collect()
 }
 
 fn line(of: &Outcome) -> String {
-    format!(
-        "{:.4} {:.4} {:.3} {:.4} {}",
-        of.error, of.spread, of.std_ratio, of.half_width, of.held
-    )
+    format!("{:.3} {:.3} {}", of.error, of.spread, of.held)
 }
 
 fn summary(outcomes: &[Outcome]) -> String {
@@ -106,12 +103,13 @@ fn summary(outcomes: &[Outcome]) -> String {
         fifths[((5.0 * outcome.rank) as usize).min(4)] += 1;
     }
     format!(
-        "90 % intervals hold the truth on {} of {} rigs; root mean squares: error {:.3}, spread {:.3}, half-width of the interval {:.3}; ranks of the truth by fifths {:?}",
+        "{}: 90 % intervals hold the truth on {} of {} rigs; over the prior's standard deviation: mean error {:.3}, root mean squares of error {:.3} and spread {:.3}; ranks of the truth by fifths {:?}",
+        outcomes[0].name,
         outcomes.iter().filter(|outcome| outcome.held).count(),
         outcomes.len(),
+        outcomes.iter().map(|outcome| outcome.error).sum::<f64>() / outcomes.len() as f64,
         rms(&|outcome| outcome.error),
         rms(&|outcome| outcome.spread),
-        rms(&|outcome| outcome.half_width),
         fifths
     )
 }

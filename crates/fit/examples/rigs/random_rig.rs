@@ -4,7 +4,7 @@ use stickslip::Setup;
 use stickslip_dynamics::{Feet, Pose, SpeedProfile, Start};
 use stickslip_evaluation::{PUSHER_MEMORY, Physics, Simulation, SimulationOptions};
 use stickslip_filter::Streams;
-use stickslip_fit::Push;
+use stickslip_fit::{Parameter, Push};
 use stickslip_formats::{TruthFacts, read_scene};
 
 /// Distance of the pusher from the face at the start (m).
@@ -18,6 +18,8 @@ const STEEPEST: f64 = 0.6;
 pub enum Support {
     /// The model's own tripod, moved by the model's own physics.
     Tripod,
+    /// An image of it with the place, turn and stretch that the fit's prior draws.
+    Prior,
     /// Its whole face, under uneven pressure.
     Face,
     /// Three feet anywhere, loaded as statics has it.
@@ -27,10 +29,9 @@ pub enum Support {
 /// A rig, and the scene given to the fit.
 #[derive(Clone, Debug)]
 pub struct RandomRig {
-    /// True friction between object and pusher.
-    pub mu_p: f64,
-    /// True tripod radius (m).
-    pub d_tri: f64,
+    /// True values of the first of the parameters that are free by default: of all of a rig from
+    /// the prior, else of μ_p and the tripod radius (m).
+    pub truth: Vec<f64>,
     /// Pushes, with the scene given to the fit.
     pub pushes: Vec<Push>,
 }
@@ -51,8 +52,20 @@ impl RandomRig {
         let friction = told.drawn_friction([mu_s, mu_p, mu_f, d_tri]);
         let mut truth = told.clone();
         truth.scene.nominal = friction;
-        if support == Support::ThreeFeet {
-            truth.scene.feet = three_feet(&told, seed);
+        let mut values = vec![friction.mu_p, friction.d_tri];
+        match support {
+            Support::ThreeFeet => truth.scene.feet = three_feet(&told, seed),
+            Support::Prior => {
+                let free = Parameter::default_list(&told).into_iter();
+                let drawn = |(k, free): (usize, Parameter)| match k {
+                    0 | 1 => (free, values[k]),
+                    _ => (free, free.prior(&told).value(draw.normal(4, k as u32))),
+                };
+                let drawn: Vec<(Parameter, f64)> = free.enumerate().map(drawn).collect();
+                Parameter::apply(&drawn, &mut truth).expect("an outline");
+                values = drawn.into_iter().map(|(_, value)| value).collect();
+            }
+            Support::Tripod | Support::Face => {}
         }
 
         // a pusher that starts in the object makes no push
@@ -63,7 +76,7 @@ impl RandomRig {
                 ..truth.clone()
             };
             let physics = match support {
-                Support::Tripod => Physics::Model,
+                Support::Tripod | Support::Prior => Physics::Model,
                 Support::Face | Support::ThreeFeet => Physics::Testbed,
             };
             let noise = if physics == Physics::Model {
@@ -74,26 +87,26 @@ impl RandomRig {
             simulated(&setup, physics, 1000 * seed + noise)
         });
         let mut pushes = Vec::new();
-        let mut radius = friction.d_tri;
         while pushes.len() < count {
             let (log, facts) = trials.next().expect("trials without an end");
-            radius = facts.d_tri.expect("a rig has a radius");
+            if support != Support::Prior {
+                values[1] = facts.d_tri.expect("a rig has a radius");
+            }
             pushes.push(Push {
                 name: format!("push {}", pushes.len()),
                 setup: told.clone(),
                 log,
             });
         }
-        if support != Support::Tripod {
+        if !matches!(support, Support::Tripod | Support::Prior) {
             // the first guess is off by as much as the scene says
-            let guess = radius * libm::exp(-told.uncertainty.friction.d_tri * d_tri);
+            let guess = values[1] * libm::exp(-told.uncertainty.friction.d_tri * d_tri);
             pushes
                 .iter_mut()
                 .for_each(|push| push.setup.scene.nominal.d_tri = guess);
         }
         Self {
-            mu_p: friction.mu_p,
-            d_tri: radius,
+            truth: values,
             pushes,
         }
     }
@@ -102,7 +115,7 @@ impl RandomRig {
 fn simulated(setup: &Setup, physics: Physics, seed: u64) -> Option<(stickslip::Log, TruthFacts)> {
     let options = SimulationOptions {
         physics,
-        seed,
+        seeds: seed.into(),
         rate: 30.0,
         repeats: 0.0,
         pusher_memory: PUSHER_MEMORY,

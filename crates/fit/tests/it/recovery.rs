@@ -139,6 +139,16 @@ fn other_pushes_are_predicted_as_a_fold_is() {
         assert_eq!(push.wmse_mm, of_fold.wmse_mm);
     }
 
+    // a log whose first rows have no object pose is predicted from the first one that has
+    let mut late = test[0].clone();
+    late.log.object[..2].fill(None);
+    let late = predict(&[late], &taught, None, &options).unwrap();
+    let ([nominal, fitted], [_, of_late]) = (predicted.pushes[0].final_mm, late.pushes[0].final_mm);
+    assert!(
+        (of_late - fitted).abs() < 0.3 * (nominal - fitted),
+        "{of_late} {fitted} {nominal}"
+    );
+
     // where fitting does not pay, all stays as it was
     let refused = CrossValidation {
         pays: false,

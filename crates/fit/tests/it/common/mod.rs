@@ -76,7 +76,7 @@ fn simulated(truth: &Setup, physics: Physics, k: usize, seed: u64) -> (Push, Tru
     });
     let options = SimulationOptions {
         physics,
-        seed,
+        seeds: seed.into(),
         rate: 15.0,
         repeats: 0.0,
         pusher_memory: PUSHER_MEMORY,
