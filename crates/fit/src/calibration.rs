@@ -37,6 +37,7 @@ fn pushes(places: &[f64]) -> Vec<PreparedPush> {
             object: Pose::default(),
             pusher: Pose::new(*place, -0.026, 0.0),
             direction: std::f64::consts::FRAC_PI_2 - 10.0 * place,
+            other_fingers: Vec::new(),
             speed: SpeedProfile::constant(0.02),
             duration: 1.0,
         });
