@@ -72,7 +72,7 @@ fn simulated(truth: &Setup, physics: Physics, k: usize, seed: u64) -> (Push, Tru
         direction,
         other_fingers: Vec::new(),
         speed: SpeedProfile::constant(0.015),
-        duration: 2.5,
+        duration: 1.5,
     });
     let options = SimulationOptions {
         physics,
