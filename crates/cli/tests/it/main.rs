@@ -21,8 +21,6 @@ mod live_page;
 mod live_recovery;
 mod mcap;
 mod newcomers;
-#[cfg(not(feature = "camera"))]
-mod no_camera;
 mod outputs;
 mod paper_scenes;
 mod program;
