@@ -29,7 +29,10 @@ _BLUE, _ORANGE, _GREY = "#0072B2", "#D55E00", "#999999"
 def scene(
     scene: Scene, *, object: ArrayLike | None = None, pusher: ArrayLike | None = None, ax: Axes | None = None
 ) -> Axes:
-    """Draws the fixels, and the object and pusher at given poses (x, y in m, theta in rad)."""
+    """Draws the fixels, and the object and pusher at given poses (x, y in m, theta in rad).
+
+    For a hand, the poses of the other fingers follow that of the pusher, (3 F,).
+    """
     ax = _plane(ax)
     bodies = outlines(scene)
     for fixel in bodies.fixels:
@@ -37,7 +40,9 @@ def scene(
     if object is not None:
         _draw(ax, placed(bodies.object, object), color=_BLUE)
     if pusher is not None:
-        _draw(ax, placed(bodies.pusher, pusher), color=_ORANGE)
+        places = numbers(pusher, "pusher").reshape(-1, 3)
+        for finger, place in zip([bodies.pusher, *bodies.fingers], places, strict=False):
+            _draw(ax, placed(finger, place), color=_ORANGE)
     ax.autoscale_view()
     return ax
 
