@@ -88,7 +88,7 @@ def test_no_link_of_the_book_leads_nowhere(tmp_path):
 
 
 def test_there_are_commands():
-    assert len(_commands("start.md")) == 4 and len(ALL) > 12
+    assert len(_commands("start.md")) == 5 and len(ALL) > 12
 
 
 @pytest.mark.parametrize("command", ALL)
@@ -130,6 +130,8 @@ def test_the_first_page_prints_what_it_shows(shell):
     (shell.folder / "my/scene.toml").write_text(_blocks("start.md", "toml")[0])
     for block in _blocks("start.md", "text"):
         command, *lines = block.splitlines()
+        if command == "stickslip view sim":
+            continue  # it serves until it is ended; the browser's tests use its page
         printed = {" ".join(line.split()) for line in shell(command.removeprefix("$ ")).splitlines()}
         shown = {" ".join(line.split()) for line in lines}
         assert not shown - {"..."} - printed, command
