@@ -69,7 +69,7 @@ class Player {
     for (let x = Math.ceil(left / 10) * 10 - 200; x < left + width + 200; x += 10) grid += `M${x} ${low - 200}v${height + 400}`;
     for (let y = Math.ceil(low / 10) * 10 - 200; y < low + height + 200; y += 10) grid += `M${left - 200} ${y}h${width + 400}`;
     add(world, "path", { d: grid, class: "grid" });
-    for (const way of data.feet.length > 0 ? [data.truth, data.pusherPose] : [data.truth]) {
+    for (const way of data.feet.length > 0 ? [data.truth, ...data.fingerPoses] : [data.truth]) {
       const trail = way.x.flatMap((x, row) => (x === null ? [] : [`${x / 100} ${way.y[row] / 100}`]));
       if (trail.length > 1) add(world, "path", { d: `M${trail.join("L")}`, class: "trail" });
     }
