@@ -54,6 +54,8 @@ class StickslipNode(Node):
         given = {name: self.declare_parameter(name, default).value for name, default in PARAMETERS.items()}
         self._frame, self._child = given["frame"], given["child_frame"]
         scene = stickslip.load_scene(given["scene"])
+        if scene.fingers:
+            raise ValueError(f"{scene.name} has [[finger]] tables; the node tracks one pusher: remove them, or use Tracker")
         contacts = [topic for topic in given["contacts"] if topic]
         self._rows = Rows(len(contacts), 1 / given["rate"], given["lag"])
         tracking = {name: given[name] for name in ("particles", "model", "seed")}

@@ -118,6 +118,7 @@ class Rows:
             "object": pose,
             "object_covariance": None,
             "pusher": between(self._pusher, time),
+            "fingers": [],
             "tactile": [None] * len(self._reads) if is_late else self._tactile(time),
             "force": None if is_late else self._force(before, time),
         }
