@@ -55,7 +55,7 @@ class StickslipNode(Node):
         self._frame, self._child = given["frame"], given["child_frame"]
         scene = stickslip.load_scene(given["scene"])
         if scene.fingers:
-            raise ValueError(f"{scene.name} has [[finger]] tables; the node tracks one pusher: remove them, or use Tracker")
+            raise ValueError(f"{scene.name} has [[finger]] tables; the node tracks one pusher. Remove them")
         contacts = [topic for topic in given["contacts"] if topic]
         self._rows = Rows(len(contacts), 1 / given["rate"], given["lag"])
         tracking = {name: given[name] for name in ("particles", "model", "seed")}
