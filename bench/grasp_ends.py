@@ -23,6 +23,7 @@ highest probability (`plan.grasp`). It prints the shares of grasps that hold.
 """
 
 import argparse
+import itertools
 import json
 import math
 from concurrent.futures import ThreadPoolExecutor
@@ -83,10 +84,9 @@ def choose(first, last):
         pose = (here["x"], here["y"], here["theta"])
         angles, offsets = np.linspace(0, np.pi, 12, endpoint=False), [0.0, -0.3 * grasp.radius, 0.3 * grasp.radius]
         closings = plan.jaw_closings(scene, pose, angles=angles, offsets=offsets, speed=grasp.speed)
-        single = stickslip.rollout(scene, np.tile(pose, (len(closings), 1)), closings)
         chosen = {
             "fixed": 0,
-            "nominal": int(np.flatnonzero([*nominal_holds(single), True])[0]) % len(closings),
+            "nominal": int(np.flatnonzero([*nominal_holds(scene, pose, closings), True])[0]) % len(closings),
             "plan.grasp": plan.grasp(tracker, closings)[0],
         }
         for name, k in chosen.items():
@@ -99,10 +99,20 @@ def choose(first, last):
         print(f"{name}: {sum(answers)} of {len(answers)} grasps hold")
 
 
-def nominal_holds(single):
-    """True for each trajectory of a rollout whose drive yields in the end while the object rests."""
-    twist, lag = single["twist"][:, -1], np.hypot(*single["pusher_lag"].T)
-    return (lag > 1e-5) & (np.hypot(*twist[:, :2].T) < STILL[0]) & (np.abs(twist[:, 2]) < STILL[1])
+def nominal_holds(scene, pose, closings):
+    """True for each closing (n, t + 1, 6) after which the drive yields while the object rests, by the scene's values.
+
+    A step at a time, from where the fingers have yielded to: a rollout measures gaps from commanded poses.
+    """
+    states = np.tile([*pose, 0.0, 0.0, 0.0], (len(closings), 1))
+    behind = np.zeros((len(closings), 6))
+    for before, after in itertools.pairwise(np.moveaxis(closings, 1, 0)):
+        step = stickslip.rollout(scene, states, np.stack([before - behind, after - behind], axis=1))
+        states = np.hstack([step["pose"][:, -1], step["twist"][:, -1]])
+        lag = np.pad(step["pusher_lag"], ((0, 0), (0, 1)))
+        behind += np.hstack([lag, -lag])  # the fingers yield against each other
+    yields = np.hypot(*step["pusher_lag"].T) > 1e-5
+    return yields & (np.hypot(*states[:, 3:5].T) < STILL[0]) & (np.abs(states[:, 5]) < STILL[1])
 
 
 def holds(truth, row):
@@ -143,8 +153,8 @@ def predictions(folder):
         way = np.clip(grasp.speed * (time[now : after + 1] - 0.5), 0.0, grasp.travel)
         path = fingers[now] + (way - way[0])[:, None] * np.array([1, 0, 0, -1, 0, 0])
         ends, here = tracker.outcomes(path), tracker.estimate
-        single = stickslip.rollout(scene, [[here["x"], here["y"], here["theta"]]], path)
-        yield before, ends["held"] + ends["jammed"], float(nominal_holds(single)[0]), float(held)
+        nominal = nominal_holds(scene, (here["x"], here["y"], here["theta"]), path[None])[0]
+        yield before, ends["held"] + ends["jammed"], float(nominal), float(held)
 
 
 def calibration_error(chance, held):
