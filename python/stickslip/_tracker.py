@@ -48,7 +48,7 @@ class Row(TypedDict):
 class Outcomes(TypedDict):
     """Probabilities of the end of a plan: the first five exclude each other and sum to 1."""
 
-    #: The object rests, the drive yields, and the contacts that press balance any force and torque.
+    #: The object rests, the drive yields, and the pressing contacts resist forces and torques in all directions.
     held: float
     #: The object rests and the drive yields, without such a form closure.
     jammed: float

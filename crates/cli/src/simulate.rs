@@ -14,7 +14,7 @@ use stickslip_evaluation::{
 use stickslip_formats::{
     TruthFacts, read_scene, read_truth_json, write_log, write_truth_csv, write_truth_json,
 };
-use stickslip_report::{Table, body_name};
+use stickslip_report::Table;
 use stickslip_testbed::true_friction;
 
 use crate::experiment::{read_facts_file, text_of};
@@ -175,7 +175,7 @@ fn tables(name: &str, setup: &Setup, simulation: &Simulation) -> String {
     };
     event("pusher touches".to_owned(), facts.first_pusher_contact);
     for (j, row) in facts.first_fixel_contacts.iter().enumerate() {
-        let name = body_name(j + 1, setup.scene.fixels.len());
+        let name = setup.scene.other(j);
         event(format!("{name} touches"), *row);
     }
     event("camera off from".to_owned(), facts.occlude_from);

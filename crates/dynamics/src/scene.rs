@@ -94,6 +94,19 @@ impl Scene {
         }
     }
 
+    /// The body of contact `k` of an estimate: the pusher's first finger, then the others.
+    pub fn contact(&self, k: usize) -> Body {
+        k.checked_sub(1).map_or(Body::Finger(0), |j| self.other(j))
+    }
+
+    /// Number of the tactile sensor on a body, where it has one.
+    pub fn sensor(&self, body: Body) -> usize {
+        match body {
+            Body::Fixel(j) => j,
+            Body::Finger(i) => self.fixels.len() + i,
+        }
+    }
+
     /// Number of bodies that may have a tactile sensor: the fixels, then the fingers of a hand of
     /// several.
     pub fn sensors(&self) -> usize {

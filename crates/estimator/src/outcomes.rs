@@ -72,7 +72,7 @@ pub enum PlanError {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Outcomes {
     /// The object rests, the drive yields, and the contacts that press are a frictional form
-    /// closure: they can balance any force and torque.
+    /// closure: they resist forces and torques in all directions.
     pub held: f64,
     /// The object rests and the drive yields, without such a closure.
     pub jammed: f64,

@@ -1,6 +1,6 @@
 //! A simulated experiment, as its files would hold it: [`Simulation`].
 
-use stickslip::dynamics::{Body, Friction};
+use stickslip::dynamics::{Body, Friction, Scene};
 use stickslip::{ForceSensor, Log, Setup};
 use stickslip_filter::{Purpose, Streams};
 use stickslip_formats::{Experiment, Truth, TruthFacts};
@@ -156,7 +156,7 @@ impl Simulation {
                 ..log(&trace, &measurements)
             },
             truth: truth(&trace),
-            facts: facts(&trace, known, options),
+            facts: facts(&setup.scene, &trace, known, options),
             trace,
         })
     }
@@ -256,16 +256,12 @@ fn truth(trace: &Trace) -> Truth {
     }
 }
 
-/// The bodies besides the pusher: fixels, then a hand's other fingers.
-fn others(trace: &Trace) -> impl Iterator<Item = Body> {
-    let (fixels, fingers) = trace.frames.first().map_or((0, 1), |frame| {
-        (frame.fixel_forces.len(), frame.finger_forces.len())
-    });
-    let fixels = (0..fixels).map(Body::Fixel);
-    fixels.chain((1..fingers).map(Body::Finger))
-}
-
-fn facts(trace: &Trace, known: &TruthFacts, options: &SimulationOptions) -> TruthFacts {
+fn facts(
+    scene: &Scene,
+    trace: &Trace,
+    known: &TruthFacts,
+    options: &SimulationOptions,
+) -> TruthFacts {
     let SimulationOptions { physics, seeds, .. } = options;
     let Seeds { rig, noise } = seeds;
     let seeds = match rig == noise {
@@ -273,11 +269,9 @@ fn facts(trace: &Trace, known: &TruthFacts, options: &SimulationOptions) -> Trut
         false => format!("rig seed {rig}, noise seed {noise}"),
     };
     let lead = (BLACKOUT_LEAD * options.rate).round() as usize;
-    // a hand hides the object from before its first touch on
-    let hand = others(trace).any(|body| matches!(body, Body::Finger(_)));
-    let fingers = hand.then_some(Body::Finger(0)).into_iter();
-    let first = fingers.chain(others(trace));
-    let first = first.filter_map(|body| trace.first_contact(body)).min();
+    // fixels, or any finger of a hand, are where the object is hidden
+    let hiding = (0..scene.sensors()).map(|k| scene.sensed(k));
+    let first = hiding.filter_map(|body| trace.first_contact(body)).min();
     let before_contact = first.map(|row| row.saturating_sub(lead));
     TruthFacts {
         source: Some(format!("stickslip simulate, {}, {seeds}", physics.name())),
@@ -286,8 +280,8 @@ fn facts(trace: &Trace, known: &TruthFacts, options: &SimulationOptions) -> Trut
         mu_f: Some(trace.friction.mu_f),
         d_tri: Some(trace.friction.d_tri),
         first_pusher_contact: trace.first_contact(Body::Finger(0)),
-        first_fixel_contacts: others(trace)
-            .map(|body| trace.first_contact(body))
+        first_fixel_contacts: (0..scene.others())
+            .map(|j| trace.first_contact(scene.other(j)))
             .collect(),
         occlude_from: known
             .occlude_from

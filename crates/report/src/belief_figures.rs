@@ -4,7 +4,7 @@ use stickslip::{ContactSlip, EstimateRow};
 
 use crate::axis::Scale;
 use crate::colour::{Colour, Line};
-use crate::experiment_figures::{Figure, body_name};
+use crate::experiment_figures::Figure;
 use crate::reported_experiment::ReportedExperiment;
 use crate::reported_run::ReportedRun;
 use crate::time_figure::{Curve, Panel, TimeFigure};
@@ -75,7 +75,7 @@ impl ReportedExperiment<'_> {
                 ..curve(run, name, colour, &|row| of(row, body).map(share))
             };
             Panel {
-                label: body_name(body, self.setup.scene.fixels.len()),
+                label: self.setup.scene.contact(body).to_string(),
                 limits: Some([0.0, 1.0]),
                 curves: vec![
                     share("sticks", Colour::INK, Line::Solid, |slip| slip.stick),

@@ -1,6 +1,6 @@
 //! The figures of one experiment: [`ReportedExperiment::figures`].
 
-use stickslip::dynamics::{Body as Other, Pose};
+use stickslip::dynamics::Pose;
 use stickslip_evaluation::LearnedParameter;
 
 use crate::axis::Scale;
@@ -212,13 +212,13 @@ impl ReportedExperiment<'_> {
     /// `None` where nothing is known of any contact.
     #[must_use]
     pub fn contact_timeline(&self) -> Option<TimeFigure> {
-        let time = &self.log.time;
+        let (time, scene) = (&self.log.time, &self.setup.scene);
         let truth = |body: usize| {
             let touches = self.touches.get(body)?.as_ref()?;
             Some(("touches", Colour::INK, intervals(time, touches)))
         };
         let sensed = |body: usize| {
-            let sensor = sensor_of(body, self.setup.scene.fixels.len());
+            let sensor = scene.sensor(scene.contact(body));
             let readings = self.log.tactile.get(sensor)?;
             let touches: Vec<bool> = readings.iter().map(|r| *r == Some(true)).collect();
             Some(("sensor reads 1", Colour::GREY, intervals(time, &touches)))
@@ -241,7 +241,7 @@ impl ReportedExperiment<'_> {
             })
         };
         let panel = |body: usize| Panel {
-            label: body_name(body, self.setup.scene.fixels.len()),
+            label: scene.contact(body).to_string(),
             // the bars lie above the probability of 1
             limits: Some([0.0, 1.7]),
             curves: estimate(body).into_iter().collect(),
@@ -383,27 +383,6 @@ impl ReportedExperiment<'_> {
             turn_factor: 10.0,
             width: 441.0,
         })
-    }
-}
-
-/// Name of a body by its number in contacts: "pusher" (0), "fixel 1", then "finger 1", in a scene
-/// with so many `fixels`.
-#[must_use]
-pub fn body_name(body: usize, fixels: usize) -> String {
-    match body {
-        0 => Other::Finger(0),
-        _ if body > fixels => Other::Finger(body - fixels),
-        _ => Other::Fixel(body - 1),
-    }
-    .to_string()
-}
-
-/// Number of the tactile sensor of a body (see [`body_name`]) in the log.
-pub(crate) fn sensor_of(body: usize, fixels: usize) -> usize {
-    match body {
-        0 => fixels,
-        _ if body > fixels => body,
-        _ => body - 1,
     }
 }
 

@@ -45,7 +45,7 @@ pub use cloud_sample::CloudSample;
 pub use colour::{Colour, Line};
 pub use curves::{FRICTION_PARAMETERS, FrictionParameter, PoseError, friction_panels, pose_errors};
 pub use drawing::Drawing;
-pub use experiment_figures::{Figure, body_name};
+pub use experiment_figures::Figure;
 pub use live_page::live_page;
 pub use marks::Mark;
 pub use outline::Outline;

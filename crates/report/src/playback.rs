@@ -10,7 +10,6 @@ use stickslip_evaluation::Reference;
 
 use crate::colour::{Colour, Line};
 use crate::curves::PoseError;
-use crate::experiment_figures::{body_name, sensor_of};
 use crate::marks::Mark;
 use crate::outline::Outline;
 use crate::playback_data::{data, has_cloud, knows_contacts};
@@ -130,9 +129,8 @@ impl Playback {
             .iter()
             .map(|time| reference.pose_at(*time))
             .collect();
-        let fixels = scene.fixels.len();
-        let bodies = fixels + scene.pusher.fingers.len();
-        let sensed = |body: usize| log.tactile.get(sensor_of(body, fixels));
+        let unseen = log.pusher_out_of_sight();
+        let bodies = (0..=scene.others()).map(|k| scene.contact(k));
         Self {
             name: "the experiment".to_owned(),
             time: log.time.clone(),
@@ -148,13 +146,10 @@ impl Playback {
                 .collect(),
             reference: held(&known, &log.object_out_of_sight()),
             reference_name: "truth".to_owned(),
-            finger_poses: log
-                .fingers()
-                .map(|poses| held(poses, &log.pusher_out_of_sight()))
-                .collect(),
+            finger_poses: log.fingers().map(|poses| held(poses, &unseen)).collect(),
             hidden,
-            touches: (0..bodies)
-                .map(|body| touch(body_name(body, fixels), sensed(body)))
+            touches: bodies
+                .map(|body| touch(body.to_string(), log.tactile.get(scene.sensor(body))))
                 .collect(),
             marks: Vec::new(),
             runs: Vec::new(),

@@ -7,7 +7,6 @@ use stickslip_evaluation::{Reference, Scores, Variant};
 use stickslip_formats::Experiment;
 
 use crate::colour::Line;
-use crate::experiment_figures::body_name;
 use crate::intervals::{intervals, row_ranges, times};
 use crate::marks::Mark;
 use crate::page::{Block, Section};
@@ -81,7 +80,7 @@ impl<'a> ReportedExperiment<'a> {
         };
         let fixels: Vec<Mark> = (1..)
             .zip(&facts.first_fixel_contacts)
-            .filter_map(|(k, row)| mark(*row, body_name(k, setup.scene.fixels.len())))
+            .filter_map(|(k, row)| mark(*row, setup.scene.contact(k).to_string()))
             .collect();
         let pusher = mark(facts.first_pusher_contact, "pusher".to_owned());
 

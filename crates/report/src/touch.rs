@@ -4,7 +4,7 @@
 //! The force that a filter or a simulation has for a contact at rest may be zero, and says nothing
 //! then: friction keeps the object in place whether the pusher presses on it or only stands there.
 
-use stickslip::dynamics::{Placed, Pose, Scene, Shape, narrow_phase};
+use stickslip::dynamics::{Body, Placed, Pose, Scene, Shape, narrow_phase};
 use stickslip::{EstimateRow, Setup};
 use stickslip_evaluation::Reference;
 use stickslip_formats::Experiment;
@@ -59,7 +59,7 @@ impl<'a> TouchRule<'a> {
 
     /// Number of bodies: the pusher, the fixels, and a hand's other fingers.
     pub fn bodies(&self) -> usize {
-        self.scene.fixels.len() + self.scene.pusher.fingers.len()
+        1 + self.scene.others()
     }
 
     /// Returns true if the object at a pose touches a body. The pusher is body 0. Fixels
@@ -67,13 +67,14 @@ impl<'a> TouchRule<'a> {
     /// where they are on the table.
     pub fn touches(&self, object: Pose, fingers: &[Option<Pose>], body: usize) -> bool {
         let Scene { fixels, pusher, .. } = self.scene;
-        if (1..=fixels.len()).contains(&body) {
-            let fixel = &fixels[body - 1];
-            return self.within(object, &fixel.shape, fixel.pose, GAP);
+        match self.scene.contact(body) {
+            Body::Fixel(j) => self.within(object, &fixels[j].shape, fixels[j].pose, GAP),
+            Body::Finger(i) => {
+                fingers.get(i).copied().flatten().is_some_and(|pose| {
+                    self.within(object, &pusher.fingers[i], pose, self.pusher_gap)
+                })
+            }
         }
-        let finger = body.saturating_sub(fixels.len());
-        let pose = fingers.get(finger).copied().flatten();
-        pose.is_some_and(|pose| self.within(object, &pusher.fingers[finger], pose, self.pusher_gap))
     }
 
     fn within(&self, object: Pose, other: &Shape, at: Pose, gap: f64) -> bool {

@@ -134,7 +134,6 @@ impl Trial<'_> {
 fn body_name(body: Body) -> String {
     match body {
         Body::Finger(0) => "the pusher".to_owned(),
-        Body::Finger(k) => format!("finger {k}"),
-        Body::Fixel(j) => format!("fixel {}", j + 1),
+        other => other.to_string(),
     }
 }
