@@ -23,7 +23,6 @@ highest probability (`plan.grasp`). It prints the shares of grasps that hold.
 """
 
 import argparse
-import itertools
 import json
 import math
 from concurrent.futures import ThreadPoolExecutor
@@ -100,19 +99,11 @@ def choose(first, last):
 
 
 def nominal_holds(scene, pose, closings):
-    """True for each closing (n, t + 1, 6) after which the drive yields while the object rests, by the scene's values.
-
-    A step at a time, from where the fingers have yielded to: a rollout measures gaps from commanded poses.
-    """
-    states = np.tile([*pose, 0.0, 0.0, 0.0], (len(closings), 1))
-    behind = np.zeros((len(closings), 6))
-    for before, after in itertools.pairwise(np.moveaxis(closings, 1, 0)):
-        step = stickslip.rollout(scene, states, np.stack([before - behind, after - behind], axis=1))
-        states = np.hstack([step["pose"][:, -1], step["twist"][:, -1]])
-        lag = np.pad(step["pusher_lag"], ((0, 0), (0, 1)))
-        behind += np.hstack([lag, -lag])  # the fingers yield against each other
-    yields = np.hypot(*step["pusher_lag"].T) > 1e-5
-    return yields & (np.hypot(*states[:, 3:5].T) < STILL[0]) & (np.abs(states[:, 5]) < STILL[1])
+    """True for each closing (n, t + 1, 6) after which the drive yields while the object rests, by the scene's values."""
+    end = stickslip.rollout(scene, np.tile(pose, (len(closings), 1)), closings)
+    twist = end["twist"][:, -1]
+    yields = np.hypot(*end["pusher_lag"].T) > 1e-5
+    return yields & (np.hypot(*twist[:, :2].T) < STILL[0]) & (np.abs(twist[:, 2]) < STILL[1])
 
 
 def holds(truth, row):

@@ -115,9 +115,10 @@ impl Dynamics {
     /// `pushers` holds the poses of the pusher's fingers where steps begin and end, (N, T + 1,
     /// fingers), trajectory after trajectory: start i under pusher i. The pusher moves straight
     /// from one to the next; where the scene gives it a stall force, it may fall behind, by as much
-    /// as the object holds it back. A trajectory depends on nothing but its start and its pusher,
-    /// and is the same, bit for bit, as step by step with [`Dynamics::step`]. One thread runs;
-    /// share the starts among threads for more.
+    /// as the object holds it back. The next step then moves it from where it stands to its next
+    /// pose. A trajectory depends on nothing but its start and its pusher, and is the same, bit for
+    /// bit, as step by step with [`Dynamics::step`]. One thread runs; share the starts among
+    /// threads for more.
     ///
     /// Two starts, and two pushes that end 1 mm and 11 mm beyond the first touch:
     ///
@@ -300,19 +301,26 @@ impl<A: RolloutArrays> Block<'_, A> {
         let mut ends = [RolloutEnd::default(); ROLLOUT_BLOCK];
         let mut pushers = [[None; LANES]; CHUNKS];
         for step in 0..steps {
-            // the pusher of each trajectory, straight from pose to pose
+            // the pusher of each trajectory, from where it stands straight to its next pose
             for (i, directions) in directions[..count].iter_mut().enumerate() {
-                let fingers = directions[..fingers].iter_mut().enumerate();
-                let motions = fingers.map(|(finger, direction)| {
-                    let (from, to) = (
-                        self.finger(i, step, finger),
-                        self.finger(i, step + 1, finger),
-                    );
-                    let motion = motion(from, to, h, *direction);
+                let lags = particles[i / LANES].pusher_lag;
+                let fingers = directions[..fingers].iter_mut().zip(&lags).enumerate();
+                let motions = fingers.map(|(finger, (direction, lag))| {
+                    let [x, y] = lag.map(|x| x.0[i % LANES]);
+                    let Pose {
+                        x: from_x,
+                        y: from_y,
+                        theta,
+                    } = self.finger(i, step, finger);
+                    let from = Pose::new(from_x - x, from_y - y, theta);
+                    let motion = motion(from, self.finger(i, step + 1, finger), h, *direction);
                     *direction = motion.direction;
                     Some(motion)
                 });
                 pushers[i / LANES][i % LANES] = PusherMotion::new(motions);
+            }
+            for particles in &mut particles[..chunks] {
+                particles.pusher_lag = Default::default();
             }
 
             dynamics.step_block_each(h, &pushers[..chunks], &mut particles[..chunks], work);

@@ -95,14 +95,17 @@ fn alone(dynamics: &Dynamics, i: usize) -> (Vec<Pose>, RolloutEnd) {
     let mut end = RolloutEnd::default();
     let (mut trajectory, mut direction) = (vec![pose], [1.0, 0.0]);
     for pair in poses.windows(2) {
-        let (x, y) = (pair[1].x - pair[0].x, pair[1].y - pair[0].y);
+        // from where it stands
+        let [lag_x, lag_y] = std::mem::take(&mut particle[0].pusher_lag)[0];
+        let from = Pose::new(pair[0].x - lag_x, pair[0].y - lag_y, pair[0].theta);
+        let (x, y) = (pair[1].x - from.x, pair[1].y - from.y);
         let length = libm::hypot(x, y);
         if length > 0.0 {
             direction = [x / length, y / length];
         }
         let motion = FingerMotion {
-            pose: pair[0],
-            twist: pair[0].twist_to(pair[1], H),
+            pose: from,
+            twist: from.twist_to(pair[1], H),
             direction,
         };
         let input = StepInput {
@@ -164,6 +167,33 @@ fn pushers_that_the_object_stops_stay_behind() {
         stuck.unsolved > 0 && stuck.most_pusher_lag == 0.0,
         "{stuck:?}"
     );
+}
+
+/// The drive stalls, and its poses go 100 mm on, through the jammed square and beyond: the square
+/// stays where it jammed, and the pusher at its face.
+#[test]
+fn a_stalled_pusher_stays_where_it_stopped_however_far_its_poses_go_on() {
+    let steps = 6 * STEPS;
+    let advance = |step: usize| 0.0004 * step as f64;
+    let poses: Vec<Pose> = (0..=steps)
+        .map(|step| Pose::new(-0.032 + advance(step), 0.0, 0.0))
+        .collect();
+    let at_rest = RolloutStart {
+        pose: Pose::default(),
+        twist: Twist::default(),
+        friction: friction(0),
+    };
+    let rollout = Dynamics::new(scene()).rollout(H, &[at_rest], &poses);
+    let rollout = rollout.expect("a rollout");
+    // fixels of radius 5 mm at x = 50 mm stop the face that lies 25 mm ahead of the middle
+    for pose in &rollout.poses[2 * STEPS..] {
+        let away = (pose.x - 0.02).abs().max(pose.y.abs());
+        assert!(away < 1e-4 && pose.theta.abs() < 1e-3, "{pose:?}");
+    }
+    let end = rollout.ends[0];
+    let stands = -0.032 + advance(steps) - end.pusher_lag[0];
+    assert_eq!(end.unsolved, 0);
+    assert!((stands - -0.01).abs() < 1e-4, "{end:?}");
 }
 
 /// q⁺ = q + h v⁺, of every step.
