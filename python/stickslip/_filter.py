@@ -51,6 +51,7 @@ def filter(log: Log, scene: Scene | str | os.PathLike[str], **options: Unpack[Fi
       ``mode_y``, ``mode_theta``
     - probability of each contact mode: ``stick_pusher``, ``left_pusher``, ``right_pusher``,
       ``stick_1``, ...
+    - probability that the object is held (frictional form closure): ``p_held``
 
     Raises :class:`stickslip.Error` if log, scene or options are invalid, and without ``force`` also
     if units, frames or columns are found to be wrong.

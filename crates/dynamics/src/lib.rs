@@ -45,6 +45,6 @@ pub use se2::{Pose, Twist, Wrench};
 pub use solver::chain::{Solver, solve, solve_from};
 pub use start::{SpeedProfile, Start};
 pub use step::Dynamics;
-pub use step_work::StepWork;
+pub use step_work::{SolvedContact, StepWork};
 pub use stickslip_lanes::{Lanes, Level, Mask, on_widest, sin_cos};
 pub use support::Support;

@@ -1,21 +1,14 @@
 //! One lane of an assembled chunk as a problem in SI units, for oracles and observers.
 
-use crate::assembly::{Assembly, Scaling};
+use crate::assembly::{Assembly, Row, Scaling};
 use crate::input::Body;
 use crate::ncp::problem::{ContactPoint, Foot, StepProblem};
-use crate::ncp::rows::{FootRow, Ncp};
+use crate::ncp::rows::{ContactRow, FootRow, Ncp};
+use crate::ncp::unknowns::Unknowns;
 use crate::se2::{Twist, Wrench};
+use crate::step_work::SolvedContact;
 
 impl<const W: usize> Assembly<W> {
-    /// The body of each contact of one lane, in the order of its problem.
-    pub fn bodies(&self, lane: usize) -> Vec<Body> {
-        self.rows
-            .iter()
-            .filter(|row| row.present.lane(lane))
-            .map(|row| row.body)
-            .collect()
-    }
-
     /// One lane's problem in SI units; the applied impulse is part of its twist.
     pub fn problem(&self, ncp: &Ncp<W>, lane: usize) -> StepProblem {
         let Scaling {
@@ -25,40 +18,16 @@ impl<const W: usize> Assembly<W> {
             stall,
             ..
         } = self.scaling;
-        let rho = (inertia / mass).sqrt();
+        let rho = self.rho();
         let [vx, vy, scaled] = ncp.free.map(|x| x.0[lane]);
         let foot = |row: &FootRow<W>| Foot {
             arm: [row.jy.0[lane] * rho, -row.jx.0[lane] * rho],
             bound: row.bound.0[lane] * mass,
         };
-        let rows = self
-            .rows
-            .iter()
-            .zip(&ncp.contacts)
-            .filter(|(row, _)| row.present.lane(lane));
-        let contacts = rows.map(|(row, numbers)| {
-            let gap = row.gap.0[lane];
-            let ([nx, ny, normal], [.., tangential]) =
-                (numbers.n.map(|x| x.0[lane]), numbers.t.map(|x| x.0[lane]));
-            let (approach, slip) = (
-                gap / h - numbers.gap_offset.0[lane],
-                -numbers.slip_offset.0[lane],
-            );
-            ContactPoint {
-                normal: [nx, ny],
-                arm: [
-                    (tangential * nx + normal * ny) * rho,
-                    (tangential * ny - normal * nx) * rho,
-                ],
-                gap,
-                mu: numbers.mu.0[lane],
-                surface_velocity: [nx * approach - ny * slip, ny * approach + nx * slip],
-                yields: match row.body {
-                    Body::Finger(i) => Some(self.directions[i].map(|d| d.0[lane])),
-                    Body::Fixel(_) => None,
-                },
-            }
-        });
+        let rows = self.rows.iter().zip(&ncp.contacts);
+        let contacts = rows
+            .filter(|(row, _)| row.present.lane(lane))
+            .map(|(row, numbers)| self.contact_point(row, numbers, lane));
         StepProblem {
             mass,
             inertia,
@@ -73,5 +42,56 @@ impl<const W: usize> Assembly<W> {
             feet: ncp.feet.each_ref().map(foot),
             stall,
         }
+    }
+
+    /// Visits the contacts of one lane after the step.
+    pub fn each_contact(
+        &self,
+        ncp: &Ncp<W>,
+        p: &Unknowns<W>,
+        lane: usize,
+        visit: &mut dyn FnMut(&SolvedContact),
+    ) {
+        let numbers = ncp.contacts.iter().zip(&p.normal);
+        for (row, (numbers, impulse)) in self.rows.iter().zip(numbers) {
+            if row.present.lane(lane) {
+                let gap = numbers.gap_velocity(&p.v, p.pusher_yield) * self.scaling.h;
+                visit(&SolvedContact {
+                    body: row.body,
+                    point: self.contact_point(row, numbers, lane),
+                    impulse: impulse.0[lane] * self.scaling.mass,
+                    gap: gap.0[lane],
+                });
+            }
+        }
+    }
+
+    /// One lane of a contact in SI units.
+    fn contact_point(&self, row: &Row<W>, numbers: &ContactRow<W>, lane: usize) -> ContactPoint {
+        let (h, rho, gap) = (self.scaling.h, self.rho(), row.gap.0[lane]);
+        let ([nx, ny, normal], [.., tangential]) =
+            (numbers.n.map(|x| x.0[lane]), numbers.t.map(|x| x.0[lane]));
+        let (approach, slip) = (
+            gap / h - numbers.gap_offset.0[lane],
+            -numbers.slip_offset.0[lane],
+        );
+        ContactPoint {
+            normal: [nx, ny],
+            arm: [
+                (tangential * nx + normal * ny) * rho,
+                (tangential * ny - normal * nx) * rho,
+            ],
+            gap,
+            mu: numbers.mu.0[lane],
+            surface_velocity: [nx * approach - ny * slip, ny * approach + nx * slip],
+            yields: match row.body {
+                Body::Finger(i) => Some(self.directions[i].map(|d| d.0[lane])),
+                Body::Fixel(_) => None,
+            },
+        }
+    }
+
+    fn rho(&self) -> f64 {
+        (self.scaling.inertia / self.scaling.mass).sqrt()
     }
 }

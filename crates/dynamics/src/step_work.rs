@@ -6,7 +6,7 @@ use crate::assembly::Assembly;
 use crate::geometry::narrow_phase::NarrowPhase;
 use crate::input::Body;
 use crate::kept_lanes::KeptLanes;
-use crate::ncp::problem::{StepProblem, StepSolution};
+use crate::ncp::problem::{ContactPoint, StepProblem, StepSolution};
 use crate::ncp::report::Report;
 use crate::ncp::rows::Ncp;
 use crate::ncp::unknowns::Unknowns;
@@ -29,6 +29,19 @@ pub struct StepWork<const W: usize> {
     pub(crate) pushers: Vec<Option<FingerContext<W>>>,
     /// Of the particles one by one, where they are stepped so; else empty.
     pub(crate) by_lane: Vec<StepWork<1>>,
+}
+
+/// A contact of one particle after a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SolvedContact {
+    /// The other body.
+    pub body: Body,
+    /// Where it is, at the beginning of the step.
+    pub point: ContactPoint,
+    /// Normal impulse over the step (N s).
+    pub impulse: f64,
+    /// Gap at the end of the step (m).
+    pub gap: f64,
 }
 
 impl<const W: usize> StepWork<W> {
@@ -86,10 +99,19 @@ impl<const W: usize> StepWork<W> {
 
     /// The body of each contact in the last step's problem of one particle.
     pub fn bodies(&self, particle: usize) -> Vec<Body> {
-        match self.by_lane.get(particle) {
-            Some(work) => work.bodies(0),
-            None => self.chunks[particle / W].bodies(particle % W),
+        let mut bodies = Vec::new();
+        self.each_contact(particle, &mut |contact| bodies.push(contact.body));
+        bodies
+    }
+
+    /// Visits the contacts of one particle after the last step, in the order of its problem.
+    pub fn each_contact(&self, particle: usize, visit: &mut dyn FnMut(&SolvedContact)) {
+        if let Some(work) = self.by_lane.get(particle) {
+            return work.each_contact(0, visit);
         }
+        let (chunk, lane) = (particle / W, particle % W);
+        let (ncp, unknowns) = (&self.ncps[chunk], &self.unknowns[chunk]);
+        self.chunks[chunk].each_contact(ncp, unknowns, lane, visit);
     }
 
     /// Normal impulse (N s) of one particle, counted over all chunks.

@@ -18,9 +18,12 @@ pub(crate) const OF_ROW: [&str; 8] = [
 /// Those of each body.
 const OF_BODY: [&str; 3] = ["stick", "left", "right"];
 
+/// The last one.
+const HELD: &str = "p_held";
+
 /// Number of columns.
 pub(crate) const fn count(others: usize) -> usize {
-    OF_ROW.len() + OF_BODY.len() * (1 + others)
+    OF_ROW.len() + OF_BODY.len() * (1 + others) + 1
 }
 
 /// Their names, in the order of the file.
@@ -28,7 +31,8 @@ pub(crate) fn names(others: usize) -> impl Iterator<Item = String> {
     let others = (1..=others).map(|k| k.to_string());
     let bodies = std::iter::once("pusher".to_owned()).chain(others);
     let of_bodies = bodies.flat_map(|body| OF_BODY.map(|how| format!("{how}_{body}")));
-    OF_ROW.map(str::to_owned).into_iter().chain(of_bodies)
+    let of_row = OF_ROW.map(str::to_owned).into_iter();
+    of_row.chain(of_bodies).chain([HELD.to_owned()])
 }
 
 /// Numbers of a row in these columns; `None` where the method has no value.
@@ -58,8 +62,9 @@ pub(crate) fn numbers(row: &EstimateRow, others: usize) -> Vec<Option<f64>> {
             });
             numbers.extend(of_bodies.map(Some));
         }
-        None => numbers.resize(count(others), None),
+        None => numbers.resize(count(others) - 1, None),
     }
+    numbers.push(row.held);
     numbers
 }
 

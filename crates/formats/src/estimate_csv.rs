@@ -6,7 +6,8 @@
 //! time,x,y,theta,vx,vy,omega,mu_s,mu_p,mu_f,d_tri,contact_pusher,contact_1,...,
 //! std_x,std_y,std_theta,std_mu_s,std_mu_p,std_mu_f,std_d_tri,ess,resampled,visual,unsolved,failed,
 //! cov_x_y,cov_x_theta,cov_y_theta,collapsed,distinct,ancestors,
-//! modes,mode_weight,mode_x,mode_y,mode_theta,stick_pusher,left_pusher,right_pusher,stick_1,...
+//! modes,mode_weight,mode_x,mode_y,mode_theta,stick_pusher,left_pusher,right_pusher,stick_1,...,
+//! p_held
 //! ```
 //!
 //! A cell is empty where the method has no value; `d_tri` and `std_d_tri` are empty throughout
@@ -55,8 +56,9 @@ const AFTER_OTHERS: [&str; 15] = [
 ];
 
 /// Columns that came later, all at the end; files of earlier versions end after this many of them.
-fn later_counts(others: usize) -> [usize; 4] {
-    [0, 1, 4, 4 + belief_columns::count(others)]
+fn later_counts(others: usize) -> [usize; 5] {
+    let all = 4 + belief_columns::count(others);
+    [0, 1, 4, all - 1, all]
 }
 
 /// Columns that files of every version have.
@@ -322,6 +324,10 @@ impl RowReader<'_, '_> {
             });
             slips.collect()
         });
+        let held = first + of_bodies.len();
+        if self.later == later_counts(self.others)[4] {
+            into.held = self.row.number(held)?;
+        }
         Ok(())
     }
 

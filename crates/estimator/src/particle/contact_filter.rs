@@ -403,6 +403,7 @@ impl<'o> ContactFilter<'o> {
         });
         let plans: Vec<(StepPlan, Draw)> = plans.collect();
         let touching = plans.last().map_or(0.0, |(plan, _)| plan.touching);
+        let rho = transition.setup.scene.object.gyration_radius();
         let mut particles = self.filter.particles().clone();
         let mut ends = vec![End::default(); particles.len()];
         particles.advance(None, ends.chunks_mut(BLOCK), |block, ends| {
@@ -411,7 +412,7 @@ impl<'o> ContactFilter<'o> {
                 scratch.propagate(transition, plan, *draw, block);
             }
             for (i, end) in ends.iter_mut().enumerate() {
-                *end = end_of(&scratch, i, touching);
+                *end = end_of(&scratch, i, rho, touching);
             }
         });
         Outcomes::of(&ends, self.filter.weights().weights())

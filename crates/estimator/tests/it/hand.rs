@@ -65,6 +65,10 @@ fn a_jaw_brings_the_object_to_its_middle() {
             let both = last.contact_pusher.expect("a contact").min(contacts[0]);
             // the jaw stops where it touches, and places of its fingers are uncertain
             assert!(both > 0.75, "{model:?}: {both}");
+            // the line between the contacts is within both friction cones
+            let held = last.held.expect("a probability");
+            assert!(held > 0.75 && held <= both, "{model:?}: {held}");
+            assert_eq!(estimate.rows[15].held, Some(0.0), "before the second touch");
         }
     }
     // the middle of the fingers stands still, and so does what is glued to it

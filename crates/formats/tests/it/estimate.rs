@@ -8,7 +8,8 @@ use stickslip_formats::{read_estimate, write_estimate};
 const HEADER: &str = "time,x,y,theta,vx,vy,omega,mu_s,mu_p,mu_f,d_tri,contact_pusher,contact_1,contact_2,\
                       std_x,std_y,std_theta,std_mu_s,std_mu_p,std_mu_f,std_d_tri,ess,resampled,visual,unsolved,failed,cov_x_y,cov_x_theta,cov_y_theta,\
                       collapsed,distinct,ancestors,modes,mode_weight,mode_x,mode_y,mode_theta,\
-                      stick_pusher,left_pusher,right_pusher,stick_1,left_1,right_1,stick_2,left_2,right_2";
+                      stick_pusher,left_pusher,right_pusher,stick_1,left_1,right_1,stick_2,left_2,right_2,\
+                      p_held";
 
 fn full_row() -> EstimateRow {
     EstimateRow {
@@ -26,6 +27,7 @@ fn full_row() -> EstimateRow {
         }),
         contact_pusher: Some(0.5),
         contact_others: Some(vec![0.25, 0.75]),
+        held: Some(0.125),
         spread: Some(Spread {
             pose: Pose::new(7.0, 8.0, 9.0),
             cross: Some(CrossCovariance {
@@ -64,7 +66,7 @@ fn slips(numbers: [f64; 9]) -> Vec<ContactSlip> {
 }
 
 /// The last cells of [`full_row`].
-const BELIEF: &str = "0,300,20,,,,,,0.5,0,0,0,0.25,0,0.25,0,0.5";
+const BELIEF: &str = "0,300,20,,,,,,0.5,0,0,0,0.25,0,0.25,0,0.5,0.125";
 
 fn estimate(rows: Vec<EstimateRow>, has_tripod: bool) -> Estimate {
     Estimate {
@@ -100,7 +102,7 @@ fn write_estimate_writes_the_contract() {
     let rows = vec![EstimateRow::default(), full_row()];
     let expected = format!(
         "{HEADER}\n0,,,,,,,,,,,,,,,,,,,,,,,0,,,,,{}\n1,1,2,3,4,5,6,0.1,0.2,0.3,0.4,0.5,0.25,0.75,7,8,9,0.5,0.6,0.7,0.8,250.5,1,0,3,1,1.5,-2.5,3.5,{BELIEF}\n",
-        ",".repeat(17)
+        ",".repeat(18)
     );
     assert_eq!(written(&estimate(rows, true)), expected);
 }
@@ -169,8 +171,8 @@ fn header_of_another_order_or_kind_is_refused() {
     );
     refused(
         &format!("{HEADER},more\n{row},0\n"),
-        "1: column 47 (more)",
-        &["no such column", "`right_2`"],
+        "1: column 48 (more)",
+        &["no such column", "`p_held`"],
     );
     refused(
         &format!("{}\n{row}\n", HEADER.replace("contact_2", "contact_3")),
@@ -275,7 +277,7 @@ prop_compose! {
         spread in prop::option::of((any_pose(), any_cross(), any_friction())),
         ess in prop::option::of(number()),
         (resampled, visual, unsolved, failed) in any::<(Option<bool>, bool, Option<u32>, Option<u32>)>(),
-        slip in prop::option::of(prop::array::uniform9(number())),
+        (slip, held) in (prop::option::of(prop::array::uniform9(number())), prop::option::of(number())),
         (collapsed, distinct, ancestors) in any::<(Option<bool>, Option<u32>, Option<u32>)>(),
     ) -> EstimateRow {
         EstimateRow {
@@ -284,6 +286,7 @@ prop_compose! {
             friction,
             contact_pusher,
             contact_others,
+            held,
             spread: spread.map(|(pose, cross, friction)| Spread { pose, cross, friction }),
             ess,
             resampled,
@@ -325,8 +328,10 @@ fn files_without_the_columns_that_came_later_are_read() {
         let spread = row.spread.expect("a spread");
         assert_eq!((spread.pose.x, spread.cross), (7.0, None));
     }
+    let row = &without(1).expect("sound").rows[0];
+    assert_eq!((row.held, &row.slip), (None, &full_row().slip));
     // no version ended there
-    for columns in [1, 2, belief - 1, belief + 1, belief + 2] {
+    for columns in [2, 3, belief - 1, belief + 1, belief + 2] {
         let error = without(columns).expect_err("must be refused").to_string();
         assert!(error.contains("missing"), "{error}");
     }

@@ -4,30 +4,34 @@ use stickslip_dynamics::{Body, Outcome};
 
 use crate::estimate::moves;
 use crate::outcomes::End;
-use crate::particle::estimate::closure::closes;
 use crate::particle::set::chunk::LANES;
+use crate::particle::transition::closure::Cones;
 use crate::particle::transition::propagation::Propagation;
 
 /// Returns how the last step of particle `i` of a block ended. Bodies up to a gap of `touching` (m)
 /// touch.
-pub(crate) fn end(block: &Propagation, i: usize, touching: f64) -> End {
-    let (problem, solution) = (block.work.problem(i), block.work.solution(i));
-    let particle = block.particles[i / LANES].get(i % LANES);
-    let rows = problem.contacts.iter().zip(&solution.normal);
-    let touches = rows.map(|(contact, impulse)| *impulse > 0.0 || contact.gap <= touching);
-    let bodies = block.work.bodies(i).into_iter().zip(touches);
-    let mut bodies: Vec<Body> = bodies
-        .filter_map(|(body, touches)| touches.then_some(body))
-        .collect();
+pub(crate) fn end(block: &Propagation, i: usize, rho: f64, touching: f64) -> End {
+    let mut bodies: Vec<Body> = Vec::new();
+    let mut cones = Cones::default();
+    block.work.each_contact(i, &mut |contact| {
+        let presses = contact.impulse > 0.0;
+        if presses {
+            cones.add(&contact.point, rho);
+        }
+        if presses || contact.gap <= touching {
+            bodies.push(contact.body);
+        }
+    });
     bodies.sort_unstable();
     bodies.dedup();
+    let particle = block.particles[i / LANES].get(i % LANES);
     let report = block.work.reports()[i / LANES][i % LANES];
     End {
         pose: particle.pose,
         bodies,
         moves: moves(&particle.twist),
-        yields: solution.pusher_yield > 0.0,
-        closes: closes(&problem, &solution),
+        yields: block.work.solution(i).pusher_yield > 0.0,
+        closes: cones.close(),
         solved: report.outcome == Outcome::Solved,
     }
 }

@@ -1,6 +1,5 @@
 //! Reported values: sums over the particles, the published pose, peaks of the belief.
 
-pub(crate) mod closure;
 pub(crate) mod end;
 pub(crate) mod geometric_median;
 pub(crate) mod group;

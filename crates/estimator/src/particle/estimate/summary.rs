@@ -67,6 +67,7 @@ pub(crate) fn summarise(
     row.friction = Some(means.friction);
     row.spread = Some(spread);
     row.contact_pusher = Some(sums.contact_pusher);
+    row.held = Some(sums.held);
     row.contact_others
         .get_or_insert_default()
         .clone_from(&sums.contact_others);

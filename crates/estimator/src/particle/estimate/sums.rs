@@ -152,6 +152,8 @@ pub struct Sums {
     pub contact_pusher: f64,
     /// Σ w c_j of every fixel, then of every other finger.
     pub contact_others: Vec<f64>,
+    /// Σ w of the particles whose object is held.
+    pub held: f64,
     /// Slip of the object, Σ w of the particles that do so: on the pusher, then on every fixel
     /// and other finger.
     pub slips: Vec<ContactSlip>,
@@ -227,6 +229,7 @@ impl Sums {
         self.unsolved = total(unsolved);
         self.failed = total(failed);
         self.contact_pusher = share(block, weights, Columns::CONTACT_PUSHER);
+        self.held = share(block, weights, Columns::HELD);
         self.contact_others.clear();
         self.slips.clear();
         let how = (Columns::CONTACT_PUSHER, Columns::SLIP_PUSHER);
@@ -313,6 +316,7 @@ impl WeightedSums for Sums {
         let cross = self.cross.iter_mut().zip(&other.cross);
         cross.for_each(|(to, from)| add(to, from));
         add(&mut self.contact_pusher, &other.contact_pusher);
+        add(&mut self.held, &other.held);
         let others = other.contact_others.len();
         self.contact_others.resize(others, 0.0);
         let others = self.contact_others.iter_mut().zip(&other.contact_others);

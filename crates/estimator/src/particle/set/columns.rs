@@ -1,5 +1,7 @@
 //! Layout of the particle set: [`Columns`].
 
+use stickslip_dynamics::Body;
+
 use crate::filter_model::FilterModel;
 use crate::particle::sensor::force_likelihood::ForceBias;
 use crate::particle::sensor::touch_channel::BELIEF_LEN;
@@ -12,7 +14,7 @@ const WARM: usize = stickslip_dynamics::WarmStart::LEN;
 const BITS: usize = 52;
 
 /// Flags that do not belong to a fixel or to another finger than the first.
-const SINGLE: usize = 10;
+const SINGLE: usize = 11;
 
 /// Flags of each fixel and of each other finger.
 const FLAGS_PER_OTHER: usize = 4;
@@ -82,6 +84,9 @@ impl Columns {
         stick: Self::flag(8),
         left: Self::flag(9),
     };
+
+    /// True if the bodies that touch hold the object.
+    pub const HELD: Flag = Self::flag(10);
 
     /// The layout for `fixels` fixels and `history` past poses.
     pub fn new(model: FilterModel, fixels: usize, history: usize) -> Self {
@@ -154,6 +159,15 @@ impl Columns {
     /// c_j: true if fixel or other finger j touches.
     pub fn contact_other(&self, other: usize) -> Flag {
         Self::flag(SINGLE + other)
+    }
+
+    /// True if a body touches.
+    pub fn contact(&self, body: Body) -> Flag {
+        match body {
+            Body::Finger(0) => Self::CONTACT_PUSHER,
+            Body::Finger(finger) => self.contact_other(self.fixels + finger - 1),
+            Body::Fixel(fixel) => self.contact_other(fixel),
+        }
     }
 
     /// True if the body of sensor k touches.
@@ -272,6 +286,7 @@ mod tests {
             Columns::UNSOLVED,
             Columns::FAILED,
             Columns::PUSHER_WAS_NEAR,
+            Columns::HELD,
         ];
         let of_others = (0..columns.others()).flat_map(|j| {
             let flags = [columns.contact_other(j), columns.other_was_near(j)];

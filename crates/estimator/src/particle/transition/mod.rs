@@ -1,6 +1,8 @@
 //! How a particle moves over one step.
 
+pub(crate) mod closure;
 pub(crate) mod contact_flags;
+mod held;
 pub(crate) mod involved;
 mod lags;
 pub(crate) mod noise_clock;

@@ -11,6 +11,7 @@ use crate::filter_model::FilterModel;
 use crate::particle::set::chunk::{Column, FlagsMut, LANES, load_chunk, store_chunk};
 use crate::particle::set::columns::Columns;
 use crate::particle::set::observer::{Observer, SolvedStep};
+use crate::particle::transition::closure::Cones;
 use crate::particle::transition::involved::Involved;
 use crate::particle::transition::noise_clock::{NOISE_STEP, sharing};
 use crate::particle::transition::step_plan::{ParameterNoise, StepPlan};
@@ -66,6 +67,8 @@ pub struct Propagation {
     /// Particles that nothing has come near yet: no force disturbs them (robust model).
     pub(crate) untouched: [Mask<LANES>; CHUNKS],
     pub(crate) involved: [Involved; CHUNKS],
+    /// Friction cones of one particle's contacts.
+    pub(crate) cones: Cones,
     pub(crate) normals: [[f64; BLOCK]; 4],
     pub(crate) level: Level,
 }
@@ -86,6 +89,7 @@ impl Default for Propagation {
             carried: [Twist::default(); CHUNKS],
             untouched: [Mask::splat(false); CHUNKS],
             involved: [Involved::NOTHING; CHUNKS],
+            cones: Cones::default(),
             normals: [[0.0; BLOCK]; 4],
             level: Level::new(),
         }
@@ -154,6 +158,7 @@ impl Propagation {
             #[inline(always)]
             || self.store(transition, plan, block),
         );
+        self.store_held(transition, plan, block);
         if model == FilterModel::Robust {
             self.weigh_step(transition, plan, block);
         }

@@ -1,39 +1,53 @@
-//! Frictional form closure of a step's contacts: [`closes`].
+//! Frictional form closure of contacts: [`Cones`].
 
-use stickslip_dynamics::{ContactPoint, StepProblem, StepSolution};
+use stickslip_dynamics::ContactPoint;
 
 /// Least component of a unit wrench against a plane.
 const CLEAR: f64 = 1e-6;
 
-/// Returns true if forces within the friction cones of the contacts that press can balance any
-/// load: their wrenches span all of force and torque with coefficients from 0 up.
-pub(crate) fn closes(problem: &StepProblem, solution: &StepSolution) -> bool {
-    let pressing = problem.contacts.iter().zip(&solution.normal);
-    let pressing = pressing.filter(|(_, impulse)| **impulse > 0.0);
-    let rho = (problem.inertia / problem.mass).sqrt();
-    let edges: Vec<[f64; 3]> = pressing
-        .flat_map(|(contact, _)| [1.0, -1.0].map(|side| edge(contact, side, rho)))
-        .collect();
-    // a half-space that holds all of them has two of them in its boundary
-    let mut planes = 0;
-    for (k, a) in edges.iter().enumerate() {
-        for b in &edges[k + 1..] {
-            let normal = cross(a, b);
-            let length = dot(&normal, &normal).sqrt();
-            if length < CLEAR {
-                continue;
-            }
-            planes += 1;
-            let heights = edges.iter().map(|edge| dot(&normal, edge) / length);
-            let (low, high) = heights.fold((0.0, 0.0), |(low, high), height| {
-                (f64::min(low, height), f64::max(high, height))
-            });
-            if low > -CLEAR || high < CLEAR {
-                return false;
+/// Friction cones of an object's contacts.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Cones {
+    /// Unit wrenches along their edges.
+    edges: Vec<[f64; 3]>,
+}
+
+impl Cones {
+    /// Forgets all.
+    pub fn clear(&mut self) {
+        self.edges.clear();
+    }
+
+    /// Adds a contact of an object with the radius of gyration `rho` (m).
+    pub fn add(&mut self, contact: &ContactPoint, rho: f64) {
+        let edges = [1.0, -1.0].map(|side| edge(contact, side, rho));
+        self.edges.extend(edges);
+    }
+
+    /// Returns true if forces within the cones can balance any load: their wrenches span all of
+    /// force and torque with coefficients from 0 up.
+    pub fn close(&self) -> bool {
+        // a half-space that holds all of them has two of them in its boundary
+        let mut planes = 0;
+        for (k, a) in self.edges.iter().enumerate() {
+            for b in &self.edges[k + 1..] {
+                let normal = cross(a, b);
+                let length = dot(&normal, &normal).sqrt();
+                if length < CLEAR {
+                    continue;
+                }
+                planes += 1;
+                let heights = self.edges.iter().map(|edge| dot(&normal, edge) / length);
+                let (low, high) = heights.fold((0.0, 0.0), |(low, high), height| {
+                    (f64::min(low, height), f64::max(high, height))
+                });
+                if low > -CLEAR || high < CLEAR {
+                    return false;
+                }
             }
         }
+        planes > 0
     }
-    planes > 0
 }
 
 /// Unit wrench, torque over ρ, of a force along an edge of a friction cone.
@@ -75,17 +89,11 @@ mod tests {
                 yields: None,
             }
         };
-        let problem = StepProblem {
-            mass: 1.0,
-            inertia: 4e-4,
-            contacts: angles.iter().map(contact).collect(),
-            ..StepProblem::default()
-        };
-        let solution = StepSolution {
-            normal: vec![1.0; angles.len()],
-            ..StepSolution::default()
-        };
-        closes(&problem, &solution)
+        let mut cones = Cones::default();
+        for angle in angles {
+            cones.add(&contact(angle), 0.02);
+        }
+        cones.close()
     }
 
     #[test]
