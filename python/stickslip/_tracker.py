@@ -41,7 +41,7 @@ class Row(TypedDict):
     fingers: Sequence[Sequence[float] | None]
     #: Tactile readings of the fixels, then of the fingers of a hand, 0 or 1, over the interval that ends at this row.
     tactile: Sequence[bool | int | None]
-    #: Force of the pusher on the object, world frame (N).
+    #: Force of the pusher, or of the whole hand, on the object, world frame (N).
     force: Sequence[float] | None
 
 
@@ -119,9 +119,10 @@ class Tracker:
         """Takes the measurements at ``time`` (s); None and masked values are missing.
 
         ``object``, ``pusher``: poses (m, m, rad). ``tactile``: readings 0 or 1, sensor k on fixel
-        k. ``force``: force of the pusher on the object (N). ``object_covariance``: variances of x,
-        y and theta, then covariances of x with y, x with theta and y with theta. ``fingers``: poses
-        of the other fingers of a hand, one per ``[[finger]]``.
+        k. ``force``: force of the pusher, or of the whole hand, on the object (N).
+        ``object_covariance``: variances of x, y and theta, then covariances of x with y, x with
+        theta and y with theta. ``fingers``: poses of the other fingers of a hand, one per
+        ``[[finger]]``.
 
         Returns the estimate at the latest row, with the names of ``estimate.csv`` (see
         :func:`stickslip.filter`); NaN before the first object pose. A row without an object pose is

@@ -25,8 +25,8 @@ pub struct Log {
     /// Tactile readings over the interval that ends at the row: one column per sensor of a fixel,
     /// then one per sensor of a hand's finger.
     pub tactile: Vec<Vec<Option<bool>>>,
-    /// Force of the pusher on the object, world frame (N); empty where the log has no force
-    /// columns.
+    /// Force of the pusher, or of all fingers of a hand together, on the object, world frame (N);
+    /// empty where the log has no force columns.
     pub force: Vec<Option<[f64; 2]>>,
 }
 

@@ -42,8 +42,8 @@ impl Default for Tactile {
     }
 }
 
-/// Sensor of the force of the pusher on the object, `[wrench]` of a scene file (docs/model.md
-/// (49)).
+/// Sensor of the force of the pusher, or of the whole hand, on the object: `[wrench]` of a scene
+/// file (docs/model.md (49)).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ForceSensor {
     /// Standard deviation of one force, per axis (N).

@@ -220,7 +220,7 @@ fn log(trace: &Trace, measurements: &[CameraMeasurement]) -> Log {
     }
 }
 
-/// The pusher's forces as a sensor with these errors measures them.
+/// Forces of the pusher, or of the whole hand, as a sensor with these errors measures them.
 fn forces(trace: &Trace, sensor: &ForceSensor, seed: u64) -> Vec<Option<[f64; 2]>> {
     let streams = Streams::new(seed).of(Purpose::Measure);
     let bias = [0, 1].map(|axis| sensor.bias_std * streams.at(0).normal(FORCE_BIAS, axis));
@@ -228,7 +228,7 @@ fn forces(trace: &Trace, sensor: &ForceSensor, seed: u64) -> Vec<Option<[f64; 2]
         let draw = streams.at(k as u64);
         let error =
             |axis: usize| bias[axis] + sensor.force_std * draw.normal(FORCE_NOISE, axis as u32);
-        Some([0, 1].map(|axis| frame.pusher_force[axis] + error(axis)))
+        Some([0, 1].map(|axis| frame.hand_force[axis] + error(axis)))
     };
     trace.frames.iter().enumerate().map(measured).collect()
 }

@@ -31,11 +31,29 @@ const SLIDING: f64 = 0.3 * 0.5 * 9.81;
 const CONTACT: usize = 15;
 const STEADY: usize = 25;
 
+/// A second finger, which comes from the other side and touches after the first.
+const JAW: &str = "
+[[finger]]
+shape = [ { disc = { radius = 0.005 } } ]
+start = [0.055, 0.0, 0.0]
+direction = 3.141592653589793
+";
+
+const EXACT: ForceSensor = ForceSensor {
+    force_std: 0.0,
+    bias_std: 0.0,
+    scale_std: 0.0,
+};
+
 fn simulated(wrench: Option<ForceSensor>, seed: u64) -> Log {
-    let mut setup = read_scene(SCENE, "test").expect("a scene");
+    simulated_in(SCENE, Physics::Model, wrench, seed)
+}
+
+fn simulated_in(scene: &str, physics: Physics, wrench: Option<ForceSensor>, seed: u64) -> Log {
+    let mut setup = read_scene(scene, "test").expect("a scene");
     setup.wrench = wrench;
     let options = SimulationOptions {
-        physics: Physics::Model,
+        physics,
         seeds: seed.into(),
         rate: 30.0,
         repeats: 0.0,
@@ -58,12 +76,7 @@ fn without_a_sensor_there_are_no_forces() {
 
 #[test]
 fn a_sliding_object_takes_its_friction() {
-    let exact = ForceSensor {
-        force_std: 0.0,
-        bias_std: 0.0,
-        scale_std: 0.0,
-    };
-    let forces = forces(exact, 0);
+    let forces = forces(EXACT, 0);
     assert!(forces[..CONTACT].iter().all(|force| *force == [0.0; 2]));
     for [x, y] in &forces[STEADY..] {
         assert!(
@@ -92,4 +105,24 @@ fn bias_lasts_and_noise_does_not() {
     }
     let std = (squares / seeds).sqrt();
     assert!((std / 0.2 - 1.0).abs() < 0.35, "{std}");
+}
+
+/// The jaw pushes the object on, then squeezes it: its force is never more than the table takes.
+#[test]
+fn a_hand_has_the_force_of_all_its_fingers_together() {
+    for physics in [Physics::Model, Physics::Testbed] {
+        let log = simulated_in(&format!("{SCENE}{JAW}"), physics, Some(EXACT), 0);
+        let sizes: Vec<f64> = log
+            .force
+            .iter()
+            .map(|force| force.map_or(0.0, |[x, y]| x.hypot(y)))
+            .collect();
+        // the second finger touches at 0.75 s; the squeeze is at the stall force of 30 N
+        let slides = sizes[17..22].iter().sum::<f64>() / 5.0;
+        assert!((slides / SLIDING - 1.0).abs() < 0.1, "{physics:?} {slides}");
+        assert!(
+            sizes[40..].iter().all(|size| *size < 1.1 * SLIDING),
+            "{physics:?} {sizes:?}"
+        );
+    }
 }

@@ -134,10 +134,9 @@ fn frame(
     contacts: Vec<Contact>,
 ) -> Frame {
     let of = |body: Body| contacts.iter().filter(move |contact| contact.body == body);
-    let along = |axis: usize| {
-        of(Body::Finger(0))
-            .map(|c| c.force[axis])
-            .fold(0.0, |sum, f| sum + f)
+    let vector = |body: Body| {
+        let forces = of(body).map(|contact| contact.force);
+        forces.fold([0.0; 2], |sum, f| [sum[0] + f[0], sum[1] + f[1]])
     };
     let normal = |c: &Contact| c.force[0] * c.normal[0] + c.force[1] * c.normal[1];
     let force = |body: Body| of(body).map(normal).fold(0.0, |sum, f| sum + f);
@@ -148,7 +147,10 @@ fn frame(
         twist: object.twist,
         pusher: fingers[0],
         other_fingers: fingers[1..].to_vec(),
-        pusher_force: [along(0), along(1)],
+        pusher_force: vector(Body::Finger(0)),
+        hand_force: (0..fingers.len())
+            .map(|k| vector(Body::Finger(k)))
+            .fold([0.0; 2], |sum, f| [sum[0] + f[0], sum[1] + f[1]]),
         fixel_forces: fixels.map(force).collect(),
         finger_forces: (0..fingers.len()).map(Body::Finger).map(force).collect(),
         contacts,

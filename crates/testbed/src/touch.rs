@@ -100,6 +100,7 @@ mod tests {
             other_fingers: vec![],
             contacts: vec![],
             pusher_force: [0.0; 2],
+            hand_force: [0.0; 2],
             fixel_forces: vec![force],
             finger_forces: vec![0.0],
             tactile: vec![],

@@ -162,6 +162,7 @@ mod tests {
                 other_fingers: vec![Pose::new(1.0, 3.0, 0.25)],
                 contacts: vec![],
                 pusher_force: [0.0; 2],
+                hand_force: [0.0; 2],
                 fixel_forces: vec![],
                 finger_forces: vec![],
                 tactile: vec![],

@@ -31,8 +31,10 @@ pub(super) struct RigState<'a> {
     gaps: Vec<Gap>,
     /// Contacts of the last step.
     pub contacts: Vec<Contact>,
-    /// Impulses since the last frame (N s): of the pusher, and normal ones of fingers and fixels.
+    /// Impulses since the last frame (N s): of the pusher, of all fingers together, and normal ones
+    /// of fingers and fixels.
     pusher_impulse: [f64; 2],
+    hand_impulse: [f64; 2],
     finger_impulses: Vec<f64>,
     fixel_impulses: Vec<f64>,
     has_moved: bool,
@@ -67,6 +69,7 @@ impl<'a> RigState<'a> {
             gaps: Vec::new(),
             contacts: Vec::new(),
             pusher_impulse: [0.0; 2],
+            hand_impulse: [0.0; 2],
             finger_impulses: vec![0.0; directions.len()],
             directions,
             fixel_impulses: vec![0.0; fixels.len()],
@@ -190,9 +193,11 @@ impl<'a> RigState<'a> {
                     let [along_x, along_y] = self.directions[k];
                     along -= fx * along_x + fy * along_y;
                     self.finger_impulses[k] += normal;
-                    if k == 0 {
-                        self.pusher_impulse[0] += h * fx;
-                        self.pusher_impulse[1] += h * fy;
+                    for (axis, force) in [fx, fy].into_iter().enumerate() {
+                        self.hand_impulse[axis] += h * force;
+                        if k == 0 {
+                            self.pusher_impulse[axis] += h * force;
+                        }
                     }
                 }
                 Body::Fixel(j) => self.fixel_impulses[j] += normal,
@@ -213,11 +218,13 @@ impl<'a> RigState<'a> {
             pusher: fingers[0],
             contacts: self.contacts.clone(),
             pusher_force: self.pusher_impulse.map(|p| p / interval),
+            hand_force: self.hand_impulse.map(|p| p / interval),
             fixel_forces: mean(&self.fixel_impulses),
             finger_forces: mean(&self.finger_impulses),
             tactile: Vec::new(),
         };
         self.pusher_impulse = [0.0; 2];
+        self.hand_impulse = [0.0; 2];
         self.finger_impulses.fill(0.0);
         self.fixel_impulses.fill(0.0);
         frame
