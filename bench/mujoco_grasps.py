@@ -1,7 +1,7 @@
 """Grasps in MuJoCo: 3-D physics, an object on twelve irregular feet, soft contacts, steps of 0.25 ms.
 
     python3 bench/mujoco_grasps.py FIRST LAST OUT [--force] [--pusher-hz 240] [--drive 10] [--hide-pusher]
-    python3 bench/mujoco_grasps.py FIRST LAST OUT --jaw
+    python3 bench/mujoco_grasps.py FIRST LAST OUT --jaw [--force]
 
 Needs `pip install mujoco numpy`; a grasp takes about 5 s. Each seed from FIRST to LAST - 1 gives a folder (scene.toml,
 log.csv, truth.csv, truth.json). Left out are seeds whose object touches no fixel, touches one before the pusher, or
@@ -17,8 +17,8 @@ spindle's force is limited: the forces on both fingers add up to it. Left out ar
 - log.csv: camera noise 0.3 mm and 0.3 degrees, pusher noise 0.1 mm, 2 % repeated rows; touch means more than 0.05 N
 - forces: means over the interval before a row; at 30 Hz its 133 steps (33.25 ms) count as 1/30 s; at 240 Hz 17 steps
   (4.25 ms) as 1/240 s
-- `--force`: adds the pusher's force on the object to the log, with noise of 0.03 N and a bias of 0.05 N (one sigma) per
-  axis, and the table [wrench] to the scene
+- `--force`: adds the pusher's force on the object, of a jaw that of both fingers together, to the log, with noise of
+  0.03 N and a bias of 0.05 N (one sigma) per axis, and the table [wrench] to the scene
 - `--pusher-hz HZ`: rows at HZ, a multiple of 30, with a camera pose in every (HZ / 30)th; above 30 no row is repeated
 - `--drive FACTOR`: multiplies the stall force of the drive
 - `--hide-pusher`: no pusher poses for 0.4 s, from 0.1 s after the first touch of a fixel
@@ -221,10 +221,10 @@ def model_text(grasp):
     </actuator></mujoco>"""
 
 
-def add_forces(model, data, bodies, sizes, push):
+def add_forces(model, data, bodies, fingers, sizes, push):
     """Adds the contact forces (N) of one step.
 
-    `sizes` (n,): of fingers and fixels, along the normal and the first tangent. `push` (2,): of the pusher on the
+    `sizes` (n,): of fingers and fixels, along the normal and the first tangent. `push` (2,): of all fingers on the
     object, in W.
     """
     force = np.zeros(6)
@@ -234,14 +234,14 @@ def add_forces(model, data, bodies, sizes, push):
             if geom in bodies:
                 mujoco.mj_contactForce(model, data, k, force)
                 sizes[bodies[geom]] += np.hypot(force[0], force[1])
-                if bodies[geom] == 0:
+                if bodies[geom] < fingers:
                     # rows of `frame` are the contact's axes; the force acts on geom2
                     sign = 1 if geom == contact.geom1 else -1
                     push += sign * (np.array(contact.frame).reshape(3, 3).T @ force[:3])[:2]
 
 
 def simulate(grasp, rate, seconds):
-    """Rows of truth.csv at a rate in Hz, and the mean force of the pusher on the object (n, 2) in W, N.
+    """Rows of truth.csv at a rate in Hz, and the mean force of all fingers on the object (n, 2) in W, N.
 
     Also the way of each finger along x (n, fingers).
     """
@@ -266,7 +266,7 @@ def simulate(grasp, rate, seconds):
                 ripple = 1 + 0.03 * math.sin(7 * data.time)
                 data.ctrl[0] = grasp.speed * ripple if travels and data.time - start > 0.5 else 0
                 mujoco.mj_step(model, data)
-                add_forces(model, data, bodies, sizes, push)
+                add_forces(model, data, bodies, rails, sizes, push)
         turned = 2 * math.atan2(free[6], free[3])
         theta += (turned - theta + math.pi) % (2 * math.pi) - math.pi
         speed = data.qvel[rails:]
@@ -294,6 +294,14 @@ def sense_force(push, seed):
     """Forces (n, 2) with a constant bias and noise, N."""
     draw = np.random.default_rng(seed + 777)
     return push + draw.normal(size=2) * FORCE_BIAS + draw.normal(size=push.shape) * FORCE_STD
+
+
+def with_force(given, seed, push, log):
+    """Header, formats and columns of a log; with forces where they are asked for."""
+    header, formats, columns = log
+    if not given.force:
+        return log
+    return header + FORCE, [*formats, "%.4f", "%.4f"], [*columns, sense_force(push, seed)]
 
 
 def scene_text(grasp, force):
@@ -351,11 +359,11 @@ def write(folder, grasp, facts, tables, force=False):
         (folder / name).write_text(text.getvalue().replace("nan", ""))
 
 
-def record_jaw(seed, out):
+def record_jaw(seed, given):
     """Draws, simulates and writes the experiment of one seed with two fingers."""
     draw = np.random.default_rng(seed)
     grasp = draw_jaw(draw, seed)
-    truth, _, ways = simulate(grasp, CAMERA_HZ, JAW_SECONDS)
+    truth, push, ways = simulate(grasp, CAMERA_HZ, JAW_SECONDS)
     camera, pusher, _ = sense(draw, truth, 1)
     touches = [int(np.argmax(force > 0.02)) if (force > 0.02).any() else None for force in truth.T[9:]]
     first = min((row for row in touches if row is not None), default=0)
@@ -371,9 +379,10 @@ def record_jaw(seed, out):
     still = np.zeros(len(truth))
     log = [truth[:, 0], camera, pusher, still, finger, still, (truth[:, 9:] > TOUCH).astype(int)]
     formats = ["%.6f"] * 6 + ["%d", "%.6f", "%.6f"] + ["%d"] * 3
-    tables = {"truth.csv": (JAW_TRUTH, "%.7g", [truth]), "log.csv": (JAW_LOG, formats, log)}
+    measured = with_force(given, seed, push, (JAW_LOG, formats, log))
+    tables = {"truth.csv": (JAW_TRUTH, "%.7g", [truth]), "log.csv": measured}
     kind = "held" if held else "lost"
-    write(out / f"{kind}-{grasp.shape}-{grasp.pusher}-{seed}", grasp, facts, tables)
+    write(given.out / f"{kind}-{grasp.shape}-{grasp.pusher}-{seed}", grasp, facts, tables, given.force)
 
 
 def record(seed, given):
@@ -398,11 +407,9 @@ def record(seed, given):
     if given.hide_pusher:
         place[first + 3 * every : first + 15 * every] = np.nan
     log = [truth[:, 0], camera, place, touch]
-    header, formats = LOG, ["%.6f"] * 6 + ["%.0f"] + ["%d"] * 3
-    if given.force:
-        log.append(sense_force(push, seed))
-        header, formats = LOG + FORCE, [*formats, "%.4f", "%.4f"]
-    tables = {"truth.csv": (TRUTH, "%.7g", [truth]), "log.csv": (header, formats, log)}
+    formats = ["%.6f"] * 6 + ["%.0f"] + ["%d"] * 3
+    measured = with_force(given, seed, push, (LOG, formats, log))
+    tables = {"truth.csv": (TRUTH, "%.7g", [truth]), "log.csv": measured}
     write(given.out / f"{kind}-{grasp.shape}-{grasp.pusher}-{seed}", grasp, facts, tables, given.force)
 
 
@@ -421,7 +428,7 @@ def main():
         parser.error(f"--pusher-hz is {given.pusher_hz}; it must be a multiple of {CAMERA_HZ}, such as 240")
     for seed in range(given.first, given.last):
         if given.jaw:
-            record_jaw(seed, given.out)
+            record_jaw(seed, given)
         else:
             record(seed, given)
 

@@ -87,8 +87,9 @@ pub struct EstimateRow {
     pub contact_pusher: Option<f64>,
     /// Posterior probability of contact with each fixel, then with each other finger of a hand.
     pub contact_others: Option<Vec<f64>>,
-    /// Posterior probability that the object is held: its contacts with the bodies that touch it
-    /// resist forces and torques in all directions, if they press (frictional form closure).
+    /// Posterior probability that the object is held: its contacts resist forces and torques in all
+    /// directions, if they press (frictional form closure). Bodies within
+    /// [`touch_gap`](crate::Uncertainty::touch_gap) count.
     pub held: Option<f64>,
     /// Slip of the object on what it touches: on the pusher, then on each fixel, then on each other
     /// finger.

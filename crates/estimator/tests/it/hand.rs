@@ -67,7 +67,7 @@ fn a_jaw_brings_the_object_to_its_middle() {
             assert!(both > 0.75, "{model:?}: {both}");
             // the line between the contacts is within both friction cones
             let held = last.held.expect("a probability");
-            assert!(held > 0.75 && held <= both, "{model:?}: {held}");
+            assert!(held > 0.75, "{model:?}: {held}");
             assert_eq!(estimate.rows[15].held, Some(0.0), "before the second touch");
         }
     }

@@ -1,7 +1,5 @@
 //! Layout of the particle set: [`Columns`].
 
-use stickslip_dynamics::Body;
-
 use crate::filter_model::FilterModel;
 use crate::particle::sensor::force_likelihood::ForceBias;
 use crate::particle::sensor::touch_channel::BELIEF_LEN;
@@ -159,15 +157,6 @@ impl Columns {
     /// c_j: true if fixel or other finger j touches.
     pub fn contact_other(&self, other: usize) -> Flag {
         Self::flag(SINGLE + other)
-    }
-
-    /// True if a body touches.
-    pub fn contact(&self, body: Body) -> Flag {
-        match body {
-            Body::Finger(0) => Self::CONTACT_PUSHER,
-            Body::Finger(finger) => self.contact_other(self.fixels + finger - 1),
-            Body::Fixel(fixel) => self.contact_other(fixel),
-        }
     }
 
     /// True if the body of sensor k touches.
