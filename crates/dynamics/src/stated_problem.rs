@@ -6,7 +6,7 @@ use crate::ncp::problem::{ContactPoint, Foot, StepProblem};
 use crate::ncp::rows::{ContactRow, FootRow, Ncp};
 use crate::ncp::unknowns::Unknowns;
 use crate::se2::{Twist, Wrench};
-use crate::step_work::SolvedContact;
+use crate::solved_contact::SolvedContact;
 
 impl<const W: usize> Assembly<W> {
     /// One lane's problem in SI units; the applied impulse is part of its twist.

@@ -6,12 +6,13 @@ use crate::assembly::Assembly;
 use crate::geometry::narrow_phase::NarrowPhase;
 use crate::input::Body;
 use crate::kept_lanes::KeptLanes;
-use crate::ncp::problem::{ContactPoint, StepProblem, StepSolution};
+use crate::ncp::problem::{StepProblem, StepSolution};
 use crate::ncp::report::Report;
 use crate::ncp::rows::Ncp;
 use crate::ncp::unknowns::Unknowns;
 use crate::prepared_scene::FingerContext;
 use crate::se2::Twist;
+use crate::solved_contact::SolvedContact;
 use crate::solver::chain::Solver;
 
 /// Working memory of [`Dynamics::step_block`](crate::Dynamics::step_block), `W` particles to a
@@ -29,19 +30,6 @@ pub struct StepWork<const W: usize> {
     pub(crate) pushers: Vec<Option<FingerContext<W>>>,
     /// Of the particles one by one, where they are stepped so; else empty.
     pub(crate) by_lane: Vec<StepWork<1>>,
-}
-
-/// A contact of one particle after a step.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SolvedContact {
-    /// The other body.
-    pub body: Body,
-    /// Where it is, at the beginning of the step.
-    pub point: ContactPoint,
-    /// Normal impulse over the step (N s).
-    pub impulse: f64,
-    /// Gap at the end of the step (m).
-    pub gap: f64,
 }
 
 impl<const W: usize> StepWork<W> {

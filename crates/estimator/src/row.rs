@@ -41,7 +41,8 @@ pub struct Row {
     /// Tactile readings over the interval that ends here, sensor k on fixel k, those of a hand's
     /// fingers behind them. Sensors past the end are silent.
     pub tactile: Vec<Option<bool>>,
-    /// Force of the pusher, or of the whole hand, on the object over the same interval, world frame (N).
+    /// Force of the pusher, or of the whole hand, on the object over the same interval, world frame
+    /// (N).
     pub force: Option<[f64; 2]>,
 }
 

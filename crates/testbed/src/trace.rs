@@ -31,7 +31,7 @@ pub struct Frame {
     pub contacts: Vec<Contact>,
     /// Force of the pusher on the object, mean over the interval that ends here (N).
     pub pusher_force: [f64; 2],
-    /// The same of all fingers together, as a sensor between arm and hand measures it (N).
+    /// Force of all fingers together, as a sensor between arm and hand measures it (N).
     pub hand_force: [f64; 2],
     /// Normal force of each fixel on the object, mean over the interval that ends here (N).
     pub fixel_forces: Vec<f64>,
