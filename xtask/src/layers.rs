@@ -23,6 +23,7 @@ const DYNAMICS: (&str, &[Layer]) = (
             "prepared_scene",
             "assembly",
             "contact_state",
+            "solved_contact",
             "stated_problem",
             "block_problems",
         ],
