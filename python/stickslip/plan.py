@@ -21,7 +21,7 @@ from stickslip._outline import outlines
 from stickslip._rollout import FRICTION, rollout
 from stickslip._tracker import Outcomes, Tracker
 
-__all__ = ["Outcome", "grasp", "jaw_closings", "predict", "prior", "straight_pushes"]
+__all__ = ["Outcome", "grasp", "jaw_closings", "jaw_openings", "predict", "prior", "straight_pushes"]
 
 #: Distance between object and pusher at the start of a candidate (m).
 _CLEARANCE = 2e-3
@@ -173,22 +173,31 @@ def jaw_closings(
     until both would meet. Both are turned by the angle. The result is (N, T + 1, 6), ``h`` (s)
     apart: poses of the pusher, then of the finger.
     """
-    if scene.fingers != 1:
-        raise Error(f"the scene has {scene.fingers} [[finger]] tables; a jaw has one beside the pusher")
     if not (speed > 0 and h > 0):
         raise Error("speed and h must be above 0")
     x, y, _ = numbers(pose, "pose")
-    bodies = outlines(scene)
-    half = max(_radius(bodies.pusher), _radius(bodies.fingers[0]))
-    opening = _radius(bodies.object) + half + _CLEARANCE
-    steps = max(1, int(np.ceil((opening - half) / (speed * h))))
-    travelled = np.minimum(speed * h * np.arange(steps + 1), opening - half)
+    opening, closed = jaw_openings(scene)
+    steps = max(1, int(np.ceil((opening - closed) / (speed * h))))
+    travelled = np.minimum(speed * h * np.arange(steps + 1), opening - closed)
     angle, aside = (grid.ravel() for grid in np.meshgrid(numbers(angles, "angles"), numbers(offsets, "offsets")))
     ahead = np.column_stack([np.cos(angle), np.sin(angle)])
     middle = np.array([x, y]) + aside[:, None] * np.column_stack([-ahead[:, 1], ahead[:, 0]])
     turned = np.broadcast_to(angle[:, None, None], (len(angle), steps + 1, 1))
     away = (opening - travelled)[None, :, None] * ahead[:, None, :]
     return np.concatenate([middle[:, None] - away, turned, middle[:, None] + away, turned], axis=2)
+
+
+def jaw_openings(scene: Scene) -> tuple[float, float]:
+    """Returns half the distance (m) of a jaw's fingers if they are clear of the object, and if they meet.
+
+    The scene has one ``[[finger]]`` beside the pusher. The x-axes of both point from the pusher to it.
+    """
+    if scene.fingers != 1:
+        raise Error(f"the scene has {scene.fingers} [[finger]] tables; a jaw has one beside the pusher")
+    bodies = outlines(scene)
+    ahead = max(part[:, 0].max() for part in bodies.pusher)
+    behind = max(-part[:, 0].min() for part in bodies.fingers[0])
+    return _radius(bodies.object) + max(ahead, behind) + _CLEARANCE, float(ahead + behind) / 2
 
 
 def grasp(
