@@ -1,12 +1,13 @@
-"""The environment is a rollout per action, deterministic, and a simple policy solves it."""
+"""The environments are deterministic rollouts, and simple policies solve them."""
 
 import gymnasium
 import numpy as np
 import pytest
+from gymnasium.utils.env_checker import check_env
 from test_plan import SCENE
 
 import stickslip
-from stickslip.gym import PushEnv
+from stickslip.gym import GraspEnv, PushEnv
 
 
 @pytest.fixture
@@ -88,3 +89,77 @@ def test_going_round_and_pushing_toward_the_goal_brings_the_object_nearer():
 def test_what_cannot_be_is_refused(wrong):
     with pytest.raises(stickslip.Error, match="must be above 0"):
         PushEnv(stickslip.Scene(SCENE), **wrong)
+
+
+FINGER = "[[finger]]\nshape = [ { disc = { radius = 0.005 } } ]\n"
+CAMERA = "[camera]\nposition_std = 3e-4\norientation_std = 5e-3\n"
+BAR = "polygon = [[-0.035, -0.012], [0.035, -0.012], [0.035, 0.012], [-0.035, 0.012]]"
+
+
+def _jaw():
+    """A jaw and a bar, which is held across and slips out along."""
+    return stickslip.Scene(SCENE.replace("disc = { radius = 0.03 }", BAR, 1) + FINGER + CAMERA)
+
+
+def _grasped(env, seed, side):
+    """Turns the bar's long side by `side` (rad) to the jaw's x-axis, comes over it along the jaw's y-axis, closes."""
+    seen, _ = env.reset(seed=seed)
+    turned = over = False
+    observations, ended = [seen], False
+    while not ended:
+        x, y = seen[:2]
+        turn = np.angle(np.exp(2j * (np.arctan2(seen[3], seen[2]) - side))) / 2
+        turned |= abs(turn) < 0.02
+        over |= abs(x) < 1e-3
+        if not turned:
+            action = [0, 0, turn / 0.2, 0]
+        elif not over:
+            # out of the object's reach first
+            action = [x / 0.01, 0, 0, 0] if abs(y) > 0.08 else [0, -np.sign(y), 0, 0]
+        else:
+            action = [0, y / 0.01, 0, 0] if abs(y) > 2e-3 else [0, 0, 0, 1]
+        seen, reward, terminated, cut, info = env.step(np.clip(action, -1, 1))
+        observations.append(seen)
+        ended = terminated or cut
+    assert (reward > 9) == info["held"] and not cut
+    return info["held"], np.array(observations)
+
+
+@pytest.mark.filterwarnings("ignore:.*(infinity|spec):UserWarning")
+def test_the_grasp_is_an_environment_of_gymnasium():
+    check_env(GraspEnv(_jaw(), particles=50))
+
+
+def test_a_jaw_across_the_bar_holds_it_where_the_camera_does_not_see_it():
+    env = GraspEnv(_jaw(), particles=50, actions=200)
+    ends = [_grasped(env, seed, np.pi / 2) for seed in range(6)]
+    assert all(held for held, _ in ends)
+    for _, seen in ends:
+        hidden = seen[:, 10] == 0
+        away = np.hypot(seen[:, 0], seen[:, 1])
+        assert away[hidden].max() < away[~hidden].min() and hidden[-1] and not hidden[0]
+        # both fingers touch, and the bar is between them: 12 mm and a finger's radius from the middle
+        np.testing.assert_allclose(seen[-1, 7:10], [0.017, 1, 1], atol=0.1)
+        assert abs(seen[-1, 7] - 0.017) < 1e-3
+
+
+def test_a_jaw_beside_the_object_closes_on_nothing():
+    env = GraspEnv(_jaw(), particles=50)
+    seen, _ = env.reset(seed=0)
+    terminated = False
+    while not terminated:
+        seen, _, terminated, _, info = env.step(np.array([0, 0, 0, 1]))
+    assert not info["held"] and abs(seen[7] - 0.005) < 1e-6
+
+
+def test_what_cannot_be_grasped_is_refused():
+    with pytest.raises(stickslip.Error, match="one beside the pusher"):
+        GraspEnv(stickslip.Scene(SCENE + CAMERA))
+    with pytest.raises(stickslip.Error, match=r"no table \[camera\]"):
+        GraspEnv(stickslip.Scene(SCENE + FINGER))
+    with pytest.raises(stickslip.Error, match="frames and speed must be above 0"):
+        GraspEnv(_jaw(), frames=0)
+    env = GraspEnv(_jaw(), particles=50)
+    env.reset(seed=0)
+    with pytest.raises(stickslip.Error, match=r"must be \(4,\)"):
+        env.step(np.zeros(3))
