@@ -49,8 +49,8 @@ class CountedRows(Rows):
         super().object(*arguments)
         self.messages["object"] += 1
 
-    def pusher(self, *arguments):
-        super().pusher(*arguments)
+    def pusher(self, *arguments, finger):
+        super().pusher(*arguments, finger=finger)
         self.messages["pusher"] += 1
 
     def touch(self, *arguments):

@@ -24,6 +24,26 @@ PACKAGE = ROOT / "ros2/stickslip_ros"
 #: A rate whose period has no rounding error (Hz).
 RATE = 32.0
 
+HAND = """
+gravity = 9.81
+object = { mass = 0.5, shape = [ { disc = { radius = 0.03 } } ] }
+support = { friction = 0.3 }
+fixels = { friction = 0.25 }
+camera = { position_std = 3e-4, orientation_std = 5e-3 }
+[pusher]
+shape = [ { disc = { radius = 0.005 } } ]
+friction = 0.3
+stall_force = 15.0
+[[finger]]
+shape = [ { disc = { radius = 0.005 } } ]
+start = [0.05, 0.0, 0.0]
+[start]
+object = [0.006, 0.003, 0.0]
+pusher = [-0.05, 0.0, 0.0]
+speed = 0.01
+duration = 3.0
+"""
+
 
 @pytest.fixture(scope="module")
 def recorded(tmp_path_factory):
@@ -47,7 +67,7 @@ def carried(pose):
 def as_carried(log):
     """Returns a log with poses as messages carry them."""
     log = {name: column.copy() for name, column in log.items()}
-    for body in ("object", "pusher"):
+    for body in ("object", "pusher", *(["finger_1"] if "finger_1_x" in log else [])):
         names = [f"{body}_{name}" for name in ("x", "y", "theta")]
         for row in np.flatnonzero(~np.isnan(log[names[0]])):
             for name, value in zip(names, carried([log[name][row] for name in names]), strict=True):
@@ -60,6 +80,8 @@ def play(session, log, delay=0):
     rows, reads = list(stickslip.rows(log)), {}
     for k, row in enumerate(rows):
         session.pose("/pusher/pose", row["time"], row["pusher"])
+        for finger, pose in enumerate(row["fingers"], 1):
+            session.pose(f"/finger_{finger}/pose", row["time"], pose)
         for sensor, on in enumerate(row["tactile"]):
             # a sensor that speaks up when it changes
             if on is not None and on != reads.get(sensor):
@@ -111,6 +133,24 @@ def test_a_log_played_message_by_message_gives_the_causal_estimates(recorded, mo
     assert last["ess"] == f"{whole['ess'][-1]:.6g}" and last["collapses"] == str(whole.collapses)
     assert (last["late_rows"], last["refused_rows"], last["restarts"]) == ("0", "0", "0")
     assert last["observed"].split() == [name for name, is_observed in whole.observed.items() if is_observed]
+
+
+def test_a_hand_has_poses_of_each_finger(tmp_path, monkeypatch):
+    stickslip.simulate(stickslip.Scene(HAND), rate=RATE, seed=1).write(tmp_path / "exp")
+    scene, log = str(tmp_path / "exp/scene.toml"), stickslip.load_log(tmp_path / "exp/log.csv")
+    for name in ("object_x", "object_y", "object_theta"):
+        log[name][40:-1] = np.nan
+    assert log["tactile_1"].any() and log["tactile_2"].any()
+    whole = stickslip.filter(as_carried(log), scene, causal=True, particles=100)
+    contacts = ["/fixel_1/contact", "/fixel_2/contact"]
+    given = {"scene": scene, "particles": 100, "rate": RATE, "lag": 0.0, "contacts": contacts}
+    with Session(monkeypatch, fingers=["/finger_1/pose"], **given) as session:
+        play(session, log)
+    assert session.warnings == []
+    rows = [{name: column[k] for name, column in whole.items()} for k in range(len(whole["time"]))]
+    assert [numbers(message) for message in session.poses] == [expected(row) for row in rows]
+    with pytest.raises(ValueError, match=r"`fingers` has 0 sources, and .* 1 \[\[finger\]\]"):
+        Session(monkeypatch, **given)
 
 
 def test_missing_and_late_messages_give_the_estimates_of_a_tracker(recorded, monkeypatch):

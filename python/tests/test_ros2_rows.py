@@ -76,6 +76,24 @@ def test_a_row_does_not_wait_for_a_pusher_that_is_silent():
     assert (row["time"], row["pusher"]) == (0.01, (0.5, 0.0, 0.0))
 
 
+def test_a_row_waits_a_period_for_a_finger_and_then_has_its_last_pose():
+    rows = Rows(sensors=0, period=0.04, fingers=1)
+    rows.object(1.0, (0.1, 0.0, 0.0))
+    rows.pusher(0.99, (0.0, 0.0, 0.0), finger=1)
+    rows.pusher(1.0, (0.5, 0.0, 0.0))
+    assert rows.take() == []
+    rows.pusher(1.01, (0.02, 0.0, 0.0), finger=1)
+    [row] = rows.take()
+    assert (row["time"], row["pusher"]) == (1.0, (0.5, 0.0, 0.0))
+    np.testing.assert_allclose(row["fingers"], [(0.01, 0.0, 0.0)], atol=1e-12)
+    # no more from the finger
+    rows.pusher(1.08, (0.6, 0.0, 0.0))
+    assert rows.take() == []
+    rows.pusher(1.10, (0.7, 0.0, 0.0))
+    [row] = rows.take()
+    assert (row["time"], row["object"], row["fingers"]) == (1.04, None, [(0.02, 0.0, 0.0)])
+
+
 def test_in_the_dark_rows_have_the_pusher_alone_at_the_rate_of_the_camera():
     rows, taken = Rows(sensors=0, period=0.04), []
     for k in range(200):

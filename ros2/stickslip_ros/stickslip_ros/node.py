@@ -6,6 +6,7 @@ The README of the package has its parameters and topics.
 from __future__ import annotations
 
 import contextlib
+import functools
 import math
 from collections.abc import Callable, Sequence
 from typing import Any
@@ -32,6 +33,7 @@ PARAMETERS = {
     "scene": "scene.toml",
     "object": "/object/pose",
     "pusher": "/pusher/pose",
+    "fingers": [""],
     "contacts": [""],
     "wrench": "",
     "reliability": "best_effort",
@@ -54,10 +56,11 @@ class StickslipNode(Node):
         given = {name: self.declare_parameter(name, default).value for name, default in PARAMETERS.items()}
         self._frame, self._child = given["frame"], given["child_frame"]
         scene = stickslip.load_scene(given["scene"])
-        if scene.fingers:
-            raise ValueError(f"{scene.name} has [[finger]] tables; the node tracks one pusher. Remove them")
-        contacts = [topic for topic in given["contacts"] if topic]
-        self._rows = Rows(len(contacts), 1 / given["rate"], given["lag"])
+        fingers, contacts = ([source for source in given[name] if source] for name in ("fingers", "contacts"))
+        if len(fingers) != scene.fingers:
+            text = f"`fingers` has {len(fingers)} sources, and {scene.name} {scene.fingers} [[finger]] tables"
+            raise ValueError(f"{text}; give one for each table")
+        self._rows = Rows(len(contacts), 1 / given["rate"], given["lag"], len(fingers))
         tracking = {name: given[name] for name in ("particles", "model", "seed")}
         self._following = Following(lambda: stickslip.Tracker(scene, **tracking))
         self._sent: float | None = None
@@ -75,7 +78,8 @@ class StickslipNode(Node):
         self._transforms: list[Transforms] = []
         self._inputs = quality.of_inputs(given["reliability"], given["depth"])
         self._listen(given["object"], self._rows.object)
-        self._listen(given["pusher"], self._rows.pusher)
+        for finger, source in enumerate([given["pusher"], *fingers]):
+            self._listen(source, functools.partial(self._rows.pusher, finger=finger))
         for sensor, topic in enumerate(contacts):
             self._listen_to_touch(sensor, topic)
         if given["wrench"]:

@@ -29,10 +29,16 @@ def between(track: Sequence[tuple[float, Pose]], time: float) -> Pose | None:
     return x0 + share * (x1 - x0), y0 + share * (y1 - y0), a0 + share * turn
 
 
+def newest(track: Sequence[tuple[float, Pose]]) -> float:
+    """Returns the time of the last pose (s)."""
+    return track[-1][0] if track else -math.inf
+
+
 class Rows:
     """Rows at the camera's rate.
 
-    A row waits until a pusher pose at its time or later arrives, at most ``period`` (s). A row has
+    A row waits until a pose of the pusher, and of each other finger of a hand, at its time or later
+    arrives, at most ``period`` (s). A row has
     the pusher alone if no object pose arrives for one and a half periods plus ``lag`` (s), the
     delay of the camera's poses after the pusher's of the same time. Such rows also fill the gap
     before an object pose.
@@ -43,10 +49,10 @@ class Rows:
     true at any time since the previous row.
     """
 
-    def __init__(self, sensors: int, period: float, lag: float = 0.0) -> None:
+    def __init__(self, sensors: int, period: float, lag: float = 0.0, fingers: int = 0) -> None:
         self._period, self._lag = period, lag
         self._objects: list[tuple[float, Pose]] = []
-        self._pusher: list[tuple[float, Pose]] = []
+        self._tracks: list[list[tuple[float, Pose]]] = [[] for _ in range(1 + fingers)]
         self._forces: list[tuple[float, Force]] = []
         self._touches: list[tuple[float, int, bool]] = []
         self._reads: list[bool | None] = [None] * sensors
@@ -56,14 +62,18 @@ class Rows:
         """Takes a pose of the object at a time (s)."""
         self._objects.append((time, pose))
 
-    def pusher(self, time: float, pose: Pose) -> None:
-        """Takes a pose of the pusher at a time (s); ignores it if it is out of order."""
-        if self._passed() - time > PAUSE:
+    def pusher(self, time: float, pose: Pose, finger: int = 0) -> None:
+        """Takes a pose of the pusher, or of another ``finger`` from 1 on, at a time (s).
+
+        Ignores it if it is out of order.
+        """
+        track = self._tracks[finger]
+        if newest(track) - time > PAUSE:
             # another clock, or one wrong time
-            self._pusher = []
+            track.clear()
             self._touches = [(-math.inf, sensor, on) for _, sensor, on in self._touches]
-        if time > self._passed():
-            self._pusher.append((time, pose))
+        if time > newest(track):
+            track.append((time, pose))
 
     def force(self, time: float, force: Force) -> None:
         """Takes a force of the pusher on the object at a time (s)."""
@@ -71,16 +81,16 @@ class Rows:
 
     def touch(self, sensor: int, on: bool) -> None:
         """Takes a reading of a sensor; sensors are numbered from 0."""
-        self._touches.append((self._passed(), sensor, on))
+        self._touches.append((newest(self._tracks[0]), sensor, on))
 
     def take(self) -> list[stickslip.Row]:
         """Returns the rows that are complete, each once."""
         rows = []
         passed = self._passed()
-        newest = max([passed, *(time for time, _ in self._objects)])
+        latest = max([passed, *(time for time, _ in self._objects)])
         waiting = []
         for time, pose in sorted(self._objects, key=lambda entry: entry[0]):
-            if passed >= time or newest - time >= self._period:
+            if passed >= time or latest - time >= self._period:
                 rows += self._gap(time, passed)
                 rows.append(self._row(time, pose))
             else:
@@ -90,7 +100,7 @@ class Rows:
             # a pause gives one row, which the tracker refuses
             step = self._period if passed - self._latest < PAUSE else passed - self._latest
             rows.append(self._row(self._latest + step, None))
-        self._pusher = [entry for entry in self._pusher if entry[0] >= passed - KEPT]
+        self._tracks = [[entry for entry in track if entry[0] >= passed - KEPT] for track in self._tracks]
         return rows
 
     def _gap(self, time: float, passed: float) -> list[stickslip.Row]:
@@ -104,8 +114,9 @@ class Rows:
         return rows
 
     def _passed(self) -> float:
-        """Returns the time of the newest pusher pose (s)."""
-        return self._pusher[-1][0] if self._pusher else -math.inf
+        """Returns the time up to which the fingers have passed (s); a silent one counts for a period."""
+        times = [newest(track) for track in self._tracks]
+        return max(min(times), times[0] - self._period)
 
     def _row(self, time: float, pose: Pose | None) -> stickslip.Row:
         is_set_back = self._latest - time > PAUSE
@@ -117,8 +128,8 @@ class Rows:
             "time": time,
             "object": pose,
             "object_covariance": None,
-            "pusher": between(self._pusher, time),
-            "fingers": [],
+            "pusher": between(self._tracks[0], time),
+            "fingers": [between(track, time) for track in self._tracks[1:]],
             "tactile": [None] * len(self._reads) if is_late else self._tactile(time),
             "force": None if is_late else self._force(before, time),
         }
