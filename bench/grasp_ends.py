@@ -1,6 +1,6 @@
 """How a jaw's grasp ends, as predicted before the end, against what happens.
 
-    python3 bench/grasp_ends.py make FIRST LAST OUT
+    python3 bench/grasp_ends.py make FIRST LAST OUT [--hard]
     python3 bench/grasp_ends.py score FOLDER [FOLDER ...]
     python3 bench/grasp_ends.py choose FIRST LAST
 
@@ -12,9 +12,11 @@ would meet. Held means that 0.5 s later both press, the object rests, and the dr
 
 Compared are the particles' probability (`held` plus `jammed`), the yes or no of one simulation with the scene's values
 from the estimated pose (nominal), and the share of held grasps in the set (base rate). Brier score: mean square of
-probability minus outcome.
-Calibration error: mean distance of probability and share over ten bins of equal
-width, weighted by their counts.
+probability minus outcome. Calibration error: mean distance of probability and share over ten bins of equal width,
+weighted by their counts.
+
+With `--hard`, objects are a triangle, a trapezoid or a pentagon, the jaw's line is up to 0.7 radii from the centre, the
+nominal friction of the fingers is 0.15, and friction is drawn from the scene's prior.
 
 `choose` grasps the objects of these scenes on the testbed. The camera sees the object for a second before the jaw
 comes. Then one closing is carried out: at a fixed angle through the measured centre (fixed); the one of 36 that the
@@ -41,12 +43,27 @@ TOUCH = 0.05  # N
 STILL = (1e-3, 0.03)  # m/s, rad/s
 
 
-def with_start(grasp, object_pose, pusher, finger, travel):
-    """Text of a scene in which both fingers close by `travel` (m) from their poses, 0.5 s after the start."""
+def drawn(seed, hard):
+    """Draws a grasp; returns it, the scene's text, and the true friction."""
+    if hard:
+        seed = 7 * seed + (3, 4, 6)[seed % 3]  # shapes with slanted sides
+    draw = np.random.default_rng(seed)
+    grasp = draw_jaw(draw, seed)
+    if not hard:
+        return draw, grasp, scene_text(grasp, False), {"mu_s": grasp.mu_s, "mu_p": grasp.mu_p}
+    y = draw.uniform(-0.7, 0.7) * grasp.radius
+    grasp.fingers = [(x, y, sign) for x, _, sign in grasp.fingers]
+    text = scene_text(grasp, False).replace("friction = 0.30", "friction = 0.15")
+    truth = plan.prior(stickslip.Scene(text), 1, seed=seed)
+    return draw, grasp, text, {name: float(values[0]) for name, values in truth.items()}
+
+
+def closed(grasp, text, truth, seed, object_pose, pusher, finger, travel):
+    """The testbed's simulation in which both fingers close by `travel` (m) from their poses, 0.5 s after the start."""
     speed, closes = float(grasp.speed), float(0.5 + travel / grasp.speed)
     knots = [[0.0, 0.0], [0.5, 0.0], [0.5, speed], [closes, speed], [closes, 0.0]]
-    text = scene_text(grasp, False).replace("\n[[finger]]\n", f"\n[[finger]]\nstart = {list(map(float, finger))}\n")
-    return f"""{text}
+    text = text.replace("\n[[finger]]\n", f"\n[[finger]]\nstart = {list(map(float, finger))}\n")
+    text = f"""{text}
 [start]
 object = {list(map(float, object_pose))}
 pusher = {list(map(float, pusher))}
@@ -54,48 +71,63 @@ direction = {float(pusher[2])}
 speed = {knots}
 duration = {closes + 1.0}
 """
+    return stickslip.simulate(stickslip.Scene(text), seed=seed, friction=truth)
 
 
-def make(first, last, out):
-    """Writes an experiment of the testbed for each seed whose object is touched."""
+def make(first, last, out, hard):
+    """Writes an experiment of the testbed for each seed."""
     for seed in range(first, last):
-        grasp = draw_jaw(np.random.default_rng(seed), seed)
+        _, grasp, text, truth = drawn(seed, hard)
         (x, y, _), (other_x, other_y, _) = grasp.fingers
-        text = with_start(grasp, (START, grasp.y, grasp.angle), (x, y, 0), (other_x, other_y, 0), grasp.travel)
-        folder = out / f"testbed-{grasp.shape}-{grasp.pusher}-{seed}"
-        truth = {"mu_s": grasp.mu_s, "mu_p": grasp.mu_p}
-        stickslip.simulate(stickslip.Scene(text), seed=seed, friction=truth).write(folder)
+        place = (START, grasp.y, grasp.angle)
+        rig = closed(grasp, text, truth, seed, place, (x, y, 0), (other_x, other_y, 0), grasp.travel)
+        rig.write(out / f"{'hard' if hard else 'testbed'}-{grasp.shape}-{grasp.pusher}-{seed}")
 
 
 def choose(first, last):
     """Prints how many grasps hold by each way to choose."""
     held = {"fixed": [], "nominal": [], "plan.grasp": []}
     for seed in range(first, last):
-        draw = np.random.default_rng(seed)
-        grasp = draw_jaw(draw, seed)
-        place = (START, grasp.y, grasp.angle)
-        scene = stickslip.Scene(scene_text(grasp, False))
+        draw, grasp, text, truth = drawn(seed, False)
+        place, scene = (START, grasp.y, grasp.angle), stickslip.Scene(text)
         tracker = stickslip.Tracker(scene, seed=seed)
         away = [(START - 0.2, 0, 0), (START + 0.2, 0, 0)]
         for row in range(30):
             seen = place + draw.normal(size=3) * CAMERA_STD
             here = tracker.push(row / 30, object=seen, pusher=away[0], fingers=away[1:])
-        pose = (here["x"], here["y"], here["theta"])
-        angles, offsets = np.linspace(0, np.pi, 12, endpoint=False), [0.0, -0.3 * grasp.radius, 0.3 * grasp.radius]
-        closings = plan.jaw_closings(scene, pose, angles=angles, offsets=offsets, speed=grasp.speed)
+        pose = pose_of(here)
+        closings = candidates(scene, grasp, pose)
         chosen = {
             "fixed": 0,
-            "nominal": int(np.flatnonzero([*nominal_holds(scene, pose, closings), True])[0]) % len(closings),
+            "nominal": nominal_choice(scene, pose, closings),
             "plan.grasp": plan.grasp(tracker, closings)[0],
         }
         for name, k in chosen.items():
-            path = closings[k]
-            travel = math.hypot(*(path[-1, :2] - path[0, :2]))
-            text = with_start(grasp, place, path[0, :3], path[0, 3:], travel)
-            truth = {"mu_s": grasp.mu_s, "mu_p": grasp.mu_p}
-            held[name].append(holds(stickslip.simulate(stickslip.Scene(text), seed=seed, friction=truth).truth, -1))
+            held[name].append(holds(carried_out(grasp, text, truth, seed, place, closings[k]).truth, -1))
     for name, answers in held.items():
         print(f"{name}: {sum(answers)} of {len(answers)} grasps hold")
+
+
+def candidates(scene, grasp, pose):
+    """36 closings about a pose, those through the centre first."""
+    angles, offsets = np.linspace(0, np.pi, 12, endpoint=False), [0.0, -0.3 * grasp.radius, 0.3 * grasp.radius]
+    return plan.jaw_closings(scene, pose, angles=angles, offsets=offsets, speed=grasp.speed)
+
+
+def carried_out(grasp, text, truth, seed, place, path):
+    """The testbed's simulation of a closing (t + 1, 6) about an object at rest at `place`."""
+    travel = math.hypot(*(path[-1, :2] - path[0, :2]))
+    return closed(grasp, text, truth, seed, place, path[0, :3], path[0, 3:], travel)
+
+
+def pose_of(estimate):
+    """Mean pose of an estimate."""
+    return [estimate[name] for name in ("x", "y", "theta")]
+
+
+def nominal_choice(scene, pose, closings):
+    """The first closing that the nominal simulation holds, else the first."""
+    return int(np.flatnonzero([*nominal_holds(scene, pose, closings), True])[0]) % len(closings)
 
 
 def nominal_holds(scene, pose, closings):
@@ -127,7 +159,7 @@ def predictions(folder):
     touched = json.loads((folder / "truth.json").read_text())["occlude_from"]
     time, fingers = log["time"], fingers_of(log)
     seed = int(folder.name.rsplit("-", 1)[1])
-    grasp = draw_jaw(np.random.default_rng(seed), seed)
+    grasp = drawn(seed, folder.name.startswith("hard"))[1]
     end = int(np.flatnonzero(np.abs(fingers[:, 0] - fingers[-1, 0]) > STOPS)[-1]) + 1
     after = np.searchsorted(time, time[end] + AFTER)
     if after >= len(time):
@@ -144,7 +176,7 @@ def predictions(folder):
         way = np.clip(grasp.speed * (time[now : after + 1] - 0.5), 0.0, grasp.travel)
         path = fingers[now] + (way - way[0])[:, None] * np.array([1, 0, 0, -1, 0, 0])
         ends, here = tracker.outcomes(path), tracker.estimate
-        nominal = nominal_holds(scene, (here["x"], here["y"], here["theta"]), path[None])[0]
+        nominal = nominal_holds(scene, pose_of(here), path[None])[0]
         yield before, ends["held"] + ends["jammed"], float(nominal), float(held)
 
 
@@ -180,13 +212,14 @@ def main():
     maker.add_argument("first", type=int)
     maker.add_argument("last", type=int)
     maker.add_argument("out", type=Path)
+    maker.add_argument("--hard", action="store_true")
     chooser = commands.add_parser("choose")
     chooser.add_argument("first", type=int)
     chooser.add_argument("last", type=int)
     commands.add_parser("score").add_argument("folders", type=Path, nargs="+")
     given = parser.parse_args()
     if given.command == "make":
-        make(given.first, given.last, given.out)
+        make(given.first, given.last, given.out, given.hard)
     elif given.command == "choose":
         choose(given.first, given.last)
     else:
