@@ -89,3 +89,12 @@ def test_straight_pushes_begin_clear_of_the_object_and_most_move_it(free):
     assert (moved > 1e-3).mean() > 0.9
     with pytest.raises(stickslip.Error, match="above 0"):
         plan.straight_pushes(free, (0, 0, 0), 0, length=0.03)
+
+
+def test_a_jaw_closes_until_its_fingers_meet():
+    bar = "shape = [ { polygon = [[-0.004, -0.02], [0.004, -0.02], [0.004, 0.02], [-0.004, 0.02]] } ]"
+    disc = "shape = [ { disc = { radius = 0.005 } } ]"
+    jaw = stickslip.Scene(SCENE.replace(disc, bar) + f"[[finger]]\n{bar}\n")
+    first, last = plan.jaw_closings(jaw, (0.1, 0, 0), angles=[0.0])[0][[0, -1]]
+    np.testing.assert_allclose(first, [0.064, 0, 0, 0.136, 0, 0], atol=1e-12)  # 2 mm from a disc of 30 mm
+    np.testing.assert_allclose(last, [0.096, 0, 0, 0.104, 0, 0], atol=1e-12)
