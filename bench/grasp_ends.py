@@ -108,10 +108,10 @@ def choose(first, last):
         print(f"{name}: {sum(answers)} of {len(answers)} grasps hold")
 
 
-def candidates(scene, grasp, pose):
+def candidates(scene, grasp, pose, **options):
     """36 closings about a pose, those through the centre first."""
     angles, offsets = np.linspace(0, np.pi, 12, endpoint=False), [0.0, -0.3 * grasp.radius, 0.3 * grasp.radius]
-    return plan.jaw_closings(scene, pose, angles=angles, offsets=offsets, speed=grasp.speed)
+    return plan.jaw_closings(scene, pose, angles=angles, offsets=offsets, speed=grasp.speed, **options)
 
 
 def carried_out(grasp, text, truth, seed, place, path):

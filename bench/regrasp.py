@@ -2,8 +2,8 @@
 
     python3 bench/regrasp.py FIRST LAST
 
-The objects are those of `grasp_ends.py --hard`, on the testbed. The pusher pushes each 100 to 300 mm, off its centre. The
-camera is off from just before the push on. Then the jaw closes about the object, as chosen among 36 closings.
+The objects are those of `grasp_ends.py --hard`, on the testbed. The pusher pushes each 30 to 100 mm, off its centre.
+The camera is off from just before the push on. Then the jaw closes about the object, as chosen among 36 closings.
 
 - Open loop: chosen as before the push, about the pose to which it will bring the object, by the nominal simulation
   (the first that it holds) or by the tracker's particles (`plan.grasp`).
@@ -11,7 +11,8 @@ camera is off from just before the push on. Then the jaw closes about the object
 - Regrasp: as after the push by particles, and once more: 5 rows after the first touch, or at the end without one, the
   tracker compares going on with 36 other closings. The fingers go round the object to the other one.
 
-A finger that comes down on the object is a grasp that does not hold. It prints the share of grasps that hold, and the paired difference to the first way, with standard errors.
+A finger that comes down on the object is a grasp that does not hold. It prints the share of grasps that hold, and the
+paired difference to the first way, with standard errors.
 """
 
 import argparse
@@ -25,9 +26,10 @@ from mujoco_grasps import START
 import stickslip
 from stickslip import plan
 
+WANTED = ("held", "jammed")
 H = 1 / 30  # s
-PUSH = (0.1, 0.3)  # m
-CLEAR = 0.01  # m: between object and pusher at first
+PUSH = (0.03, 0.1)  # m
+CLEAR = 0.015  # m: between object and fingers at first
 AFTER_TOUCH = 5  # rows
 SPEED = 0.05  # m/s: of the push and of the closing jaw
 ROUND, FAST = 0.15, 0.3  # m from the object, m/s: fingers that go round it
@@ -38,8 +40,8 @@ def grasps(seed):
     draw, grasp, text, truth = drawn(seed, True)
     grasp.speed = SPEED
     scene, place = stickslip.Scene(text), (START, grasp.y, grasp.angle)
-    start, _ = plan.jaw_openings(scene)
-    pusher = (START - start - CLEAR, draw.uniform(-0.7, 0.7) * grasp.radius, 0)
+    start, _ = plan.jaw_openings(scene, CLEAR)
+    pusher = (START - start, draw.uniform(-0.7, 0.7) * grasp.radius, 0)
     travel = CLEAR + draw.uniform(*PUSH)
     rig = closed(grasp, text, truth, seed, place, pusher, (START + 0.5, 0, 0), travel)
     place = [rig.truth[name][-1] for name in ("x", "y", "theta")]
@@ -56,10 +58,10 @@ def grasps(seed):
     predicted = stickslip.rollout(scene, [pose_of(seen)], fingers_of(rig.log)[hidden - 1 :])["pose"][0, -1]
     chosen = {}
     for name, pose, belief in [("open loop", predicted, blind), ("after the push", pose_of(tracker.estimate), tracker)]:
-        closings = candidates(scene, grasp, pose)
+        closings = candidates(scene, grasp, pose, clearance=CLEAR)
         chosen[f"{name}, nominal"] = closings[nominal_choice(scene, pose, closings)]
-        closings = candidates(scene, grasp, pose_of(belief.estimate))
-        chosen[f"{name}, particles"] = path = closings[plan.grasp(belief, closings)[0]]
+        closings = candidates(scene, grasp, pose_of(belief.estimate), clearance=CLEAR)
+        chosen[f"{name}, particles"] = path = closings[plan.grasp(belief, closings, wanted=WANTED)[0]]
     rigs = {name: tried(grasp, text, truth, seed, place, path) for name, path in chosen.items()}
     held = {name: rig is not None and holds(rig.truth, -1) for name, rig in rigs.items()}
 
@@ -77,15 +79,20 @@ def grasps(seed):
     for row in list(stickslip.rows(first.log))[: now + 1]:
         tracker.push(**{**row, "time": began + row["time"], "object": None})
     pose = pose_of(tracker.estimate)
-    closings = candidates(scene, grasp, pose)
-    best, ends = plan.grasp(tracker, closings)
+    closings = candidates(scene, grasp, pose, clearance=CLEAR)
+    best, ends = plan.grasp(tracker, closings, wanted=WANTED)
     done = round((first.log["time"][now] - 0.5) / H)
     rest = path[done:] + (fingers_of(first.log)[now] - path[done]) if 0 <= done < len(path) - 1 else None
-    if rest is None or ends[best]["held"] > tracker.outcomes(rest)["held"]:
+    if rest is None or chance(ends[best]) > chance(tracker.outcomes(rest)):
         place = [first.truth[name][now] for name in ("x", "y", "theta")]
         first = tried(grasp, text, truth, seed, place, closings[best])
     held[name] = first is not None and holds(first.truth, -1)
     return held
+
+
+def chance(ends):
+    """Probability that a grasp holds."""
+    return sum(ends[name] for name in WANTED)
 
 
 def tried(*grasp):

@@ -8,7 +8,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -163,20 +163,22 @@ def jaw_closings(
     angles: ArrayLike,
     offsets: ArrayLike = (0.0,),
     speed: float = 0.02,
+    clearance: float = _CLEARANCE,
     h: float = 1.0 / 30.0,
 ) -> NDArray[np.float64]:
     """Returns the closings of a jaw about an object at ``pose`` (m, m, rad).
 
     The scene has one ``[[finger]]`` beside the pusher. Every angle (rad, direction of the pusher's
     motion in the world) is combined with every offset (m) of the fingers' line across it, from the
-    object's centre. The jaw begins clear of the object, and each finger moves at ``speed`` (m/s)
-    until both would meet. Both are turned by the angle. The result is (N, T + 1, 6), ``h`` (s)
+    object's centre. The jaw begins ``clearance`` (m) outside the circle around the object: where its
+    pose is uncertain, wider, so that no finger comes down on it. Each finger moves at ``speed``
+    (m/s) until both would meet. Both are turned by the angle. The result is (N, T + 1, 6), ``h`` (s)
     apart: poses of the pusher, then of the finger.
     """
-    if not (speed > 0 and h > 0):
-        raise Error("speed and h must be above 0")
+    if not (speed > 0 and clearance > 0 and h > 0):
+        raise Error("speed, clearance and h must be above 0")
     x, y, _ = numbers(pose, "pose")
-    opening, closed = jaw_openings(scene)
+    opening, closed = jaw_openings(scene, clearance)
     steps = max(1, int(np.ceil((opening - closed) / (speed * h))))
     travelled = np.minimum(speed * h * np.arange(steps + 1), opening - closed)
     angle, aside = (grid.ravel() for grid in np.meshgrid(numbers(angles, "angles"), numbers(offsets, "offsets")))
@@ -187,32 +189,36 @@ def jaw_closings(
     return np.concatenate([middle[:, None] - away, turned, middle[:, None] + away, turned], axis=2)
 
 
-def jaw_openings(scene: Scene) -> tuple[float, float]:
-    """Returns half the distance (m) of a jaw's fingers if they are clear of the object, and if they meet.
+def jaw_openings(scene: Scene, clearance: float = _CLEARANCE) -> tuple[float, float]:
+    """Returns half the distance (m) of a jaw's fingers around the object, and where they meet.
 
-    The scene has one ``[[finger]]`` beside the pusher. The x-axes of both point from the pusher to it.
+    They are ``clearance`` (m) outside the circle around the object, whose centre is between them.
+    The scene has one ``[[finger]]`` beside the pusher. The x-axes of both point from the pusher to
+    it.
     """
     if scene.fingers != 1:
         raise Error(f"the scene has {scene.fingers} [[finger]] tables; a jaw has one beside the pusher")
     bodies = outlines(scene)
     ahead = max(part[:, 0].max() for part in bodies.pusher)
     behind = max(-part[:, 0].min() for part in bodies.fingers[0])
-    return _radius(bodies.object) + max(ahead, behind) + _CLEARANCE, float(ahead + behind) / 2
+    return _radius(bodies.object) + max(ahead, behind) + clearance, float(ahead + behind) / 2
 
 
 def grasp(
-    tracker: Tracker, closings: ArrayLike, *, wanted: str = "held", h: float = 1.0 / 30.0
+    tracker: Tracker, closings: ArrayLike, *, wanted: str | Sequence[str] = "held", h: float = 1.0 / 30.0
 ) -> tuple[int, list[Outcomes]]:
     """Returns the closing that ends as ``wanted`` with the highest probability, and how each ends.
 
     ``closings``: paths of the fingers (N, T + 1, 3 F), ``h`` (s) apart, as from
-    :func:`jaw_closings`. ``wanted``: a key of :class:`stickslip.Outcomes`. Every path is rolled out
+    :func:`jaw_closings`. ``wanted``: a key of :class:`stickslip.Outcomes`, or several, as
+    ``("held", "jammed")`` where the fingers are too smooth for form closure. Every path is rolled out
     by the tracker's particles (see :meth:`stickslip.Tracker.outcomes`).
     """
     ends = [tracker.outcomes(path, h=h) for path in numbers(closings, "closings")]
-    if not ends or wanted not in ("held", "jammed", "resting", "moving", "lost"):
+    names = [wanted] if isinstance(wanted, str) else wanted
+    if not ends or not set(names) <= {"held", "jammed", "resting", "moving", "lost"}:
         raise Error(f"wanted is {wanted!r}; it must be held, jammed, resting, moving or lost, and closings not empty")
-    chances = [float(end[wanted]) for end in ends]  # type: ignore[literal-required]
+    chances = [sum((float(end[name]) for name in names), 0.0) for end in ends]  # type: ignore[literal-required]
     return int(np.argmax(chances)), ends
 
 

@@ -126,6 +126,7 @@ def test_how_a_grasp_ends_is_predicted_and_the_best_one_chosen() -> None:
     closings = plan.jaw_closings(jaw, (0.0, 0.0, 0.0), angles=[np.pi / 2], offsets=[0.0, 0.05])
     best, ends = plan.grasp(tracker, closings)
     assert best == 0 and ends[0]["held"] > 0.9 and ends[1]["lost"] > 0.9
+    assert plan.grasp(tracker, closings, wanted=("moving", "lost"))[0] == 1
     assert ends[0]["contacts"][0] == (["pusher", "finger 1"], pytest.approx(1.0, abs=0.1))
     sums = [end["held"] + end["jammed"] + end["resting"] + end["moving"] + end["lost"] for end in ends]
     np.testing.assert_allclose(sums, 1.0)
