@@ -44,7 +44,7 @@ STILL = (1e-3, 0.03)  # m/s, rad/s
 
 
 def drawn(seed, hard):
-    """Draws a grasp; returns it, the scene's text, and the true friction."""
+    """Draws a grasp; returns the generator, the grasp, the text of its scene, and the true friction."""
     if hard:
         seed = 7 * seed + (3, 4, 6)[seed % 3]  # shapes with slanted sides
     draw = np.random.default_rng(seed)
@@ -162,7 +162,7 @@ def predictions(folder):
     grasp = drawn(seed, folder.name.startswith("hard"))[1]
     end = int(np.flatnonzero(np.abs(fingers[:, 0] - fingers[-1, 0]) > STOPS)[-1]) + 1
     after = np.searchsorted(time, time[end] + AFTER)
-    if after >= len(time):
+    if touched is None or after >= len(time):
         return
     goal = grasp.fingers[0][0] + grasp.travel  # of the pusher, as commanded
     held = holds(truth, after) and fingers[after, 0] < goal - STOPS
