@@ -196,9 +196,11 @@ def score(folders):
         rows = np.array([answer for answer in found if answer[0] == before])
         chance, nominal, held = rows.T[1:]
         error, groups = calibration_error(chance, held)
-        brier = [np.mean((guess - held) ** 2) for guess in (chance, nominal, np.full(len(held), held.mean()))]
+        errors = [(guess - held) ** 2 for guess in (chance, nominal, np.full(len(held), held.mean()))]
+        gain = errors[0] - errors[1]
         print(f"{before} s before the end: {len(held)} grasps, {100 * held.mean():.0f} % held")
-        print("  Brier score: particles {:.3f}, nominal {:.3f}, base rate {:.3f}".format(*brier))
+        print("  Brier score: particles {:.3f}, nominal {:.3f}, base rate {:.3f}".format(*map(np.mean, errors)))
+        print(f"  particles minus nominal: {gain.mean():.3f} +- {gain.std(ddof=1) / math.sqrt(len(gain)):.3f}")
         print(f"  calibration error of the particles: {error:.3f}")
         for group in groups:
             print(f"    predicted {chance[group].mean():.2f}, held {held[group].mean():.2f}, {group.sum()} grasps")

@@ -2,7 +2,7 @@
 
     python3 bench/regrasp.py FIRST LAST
 
-The objects are those of `grasp_ends.py --hard`, on the testbed. The pusher pushes each 30 to 100 mm, off its centre.
+The objects are those of `grasp_ends.py --hard`, on the testbed. The pusher pushes each 100 to 300 mm, off its centre.
 The camera is off from just before the push on. Then the jaw closes about the object, as chosen among 36 closings.
 
 - Open loop: chosen as before the push, about the pose to which it will bring the object, by the nominal simulation
@@ -28,8 +28,8 @@ from stickslip import plan
 
 WANTED = ("held", "jammed")
 H = 1 / 30  # s
-PUSH = (0.03, 0.1)  # m
-CLEAR = 0.015  # m: between object and fingers at first
+PUSH = (0.1, 0.3)  # m
+CLEAR = 0.025  # m: between object and fingers at first
 AFTER_TOUCH = 5  # rows
 SPEED = 0.05  # m/s: of the push and of the closing jaw
 ROUND, FAST = 0.15, 0.3  # m from the object, m/s: fingers that go round it
@@ -46,7 +46,7 @@ def grasps(seed):
     rig = closed(grasp, text, truth, seed, place, pusher, (START + 0.5, 0, 0), travel)
     place = [rig.truth[name][-1] for name in ("x", "y", "theta")]
     rows = list(stickslip.rows(rig.log))
-    hidden = rig.facts["occlude_from"] or len(rows)
+    hidden = rig.facts["occlude_from"] or len(rows) - 1  # a push that misses
     tracker = stickslip.Tracker(scene, seed=seed)
     for row in rows[:hidden]:
         seen = tracker.push(**row)
