@@ -22,7 +22,7 @@ use self::object::{Object, objects};
 use self::page::page;
 use self::tables::{overview, text};
 use crate::args::Program;
-use crate::compare::expand;
+use crate::compare::{expand, inputs};
 use crate::experiment::{check_sense, experiment_name, read_folder, text_of};
 use crate::files::{Results, ready_file, ready_folder, refuse_inputs, write_report};
 use crate::fit_args::FitArgs;
@@ -60,15 +60,15 @@ pub fn fit(args: &FitArgs) -> Result<Verdict> {
     if !args.free.is_empty() {
         Parameter::parse_list(&args.free)?; // before anything is read
     }
-    let folders = expand(&args.folders, args.scenes())?;
+    let scenes = args.scenes.scenes();
+    let folders = expand(&args.folders, scenes)?;
     let test_folders = test_folders(args, &folders)?;
     let topics = args.topics.options(Program::command())?;
     let pool = args.threads.pool()?;
-    let all = folders.iter().chain(&test_folders);
-    let scenes: Vec<PathBuf> = all.map(|folder| args.scenes().of(folder)).collect();
-    let scenes: Vec<&Path> = scenes.iter().map(PathBuf::as_path).collect();
+    let read = inputs(&[&folders[..], &test_folders].concat(), scenes);
+    let read: Vec<&Path> = read.iter().map(PathBuf::as_path).collect();
     if let Some(report) = &args.report {
-        ready_file(report, &scenes)?;
+        ready_file(report, &read)?;
     }
     ready_folder(&args.out)?;
 
@@ -76,7 +76,7 @@ pub fn fit(args: &FitArgs) -> Result<Verdict> {
     let (test, of_test) = pool.install(|| read_pushes(args, &topics, &test_folders))?;
     let objects = objects(&args.out, (folders, pushes), test)?;
     for object in &objects {
-        refuse_inputs(&object.out.join(SCENE), &scenes)?;
+        refuse_inputs(&object.out.join(SCENE), &read)?;
         if let (Some(name), 0..2) = (&object.name, object.pushes.len()) {
             let (pushes, least) = (object.pushes.len(), 2);
             return Err(FitError::TooFewPushes { pushes, least }).context(name.clone());
@@ -115,7 +115,7 @@ pub fn fit(args: &FitArgs) -> Result<Verdict> {
 
 /// Writes the fitted scene and fit.json.
 fn write(args: &FitArgs, object: &Object, result: &FitResult) -> Result<()> {
-    let first = args.scenes().of(&object.folders[0]);
+    let first = args.scenes.scenes().of(&object.folders[0]);
     let scene = result.fit.scene_text(
         &text_of(&first, "scene")?,
         &first.display().to_string(),
@@ -157,7 +157,7 @@ fn test_folders(args: &FitArgs, folders: &[PathBuf]) -> Result<Vec<PathBuf>> {
     if args.test.is_empty() {
         return Ok(Vec::new());
     }
-    let test = expand(&args.test, args.scenes())?;
+    let test = expand(&args.test, args.scenes.scenes())?;
     let seen: Vec<PathBuf> = folders.iter().flat_map(std::fs::canonicalize).collect();
     for folder in &test {
         if std::fs::canonicalize(folder).is_ok_and(|folder| seen.contains(&folder)) {
@@ -219,7 +219,7 @@ fn read_pushes(
     folders: &[PathBuf],
 ) -> Result<(Vec<Push>, Verdict)> {
     let read = |folder: &PathBuf| {
-        let (experiment, verdict) = read_folder(folder, &args.scenes().of(folder), topics)
+        let (experiment, verdict) = read_folder(folder, &args.scenes.scenes().of(folder), topics)
             .with_context(|| folder.display().to_string())?;
         check_sense(&args.force, &experiment).with_context(|| folder.display().to_string())?;
         let push = Push {
