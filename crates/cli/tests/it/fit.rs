@@ -110,8 +110,20 @@ fn fit_writes_a_scene_that_filters_and_keeps_its_comments() {
             .arg(named(1))
             .arg(named(2))
             .args(["--free", "mu_f", "--folds", "0", "--test"])
-            .arg(named(3)),
+            .arg(named(3))
+            .arg("--report")
+            .arg(out.join("fit.html")),
     );
+    // the page plays the push of --test back, and has its final pose
+    let page = fs::read_to_string(out.join("fit.html")).unwrap();
+    for words in [
+        "push-3: largest error of pushes of --test",
+        "median of the posterior",
+        "mu_f: R-hat",
+        "final pose, predicted - measured (mm)",
+    ] {
+        assert!(page.contains(words), "{words}");
+    }
     let text = String::from_utf8(output.stdout).unwrap();
     assert!(text.contains("pushes of --test, median"), "{text}");
     assert!(text.contains("not identifiable"), "{text}");
@@ -182,6 +194,41 @@ fn logs_are_fitted_with_one_scene() {
     assert!(told.contains("would destroy what is read"), "{told}");
 }
 
+/// A call that was interrupted after the first object goes on with the second one, and ends as if
+/// it had made both. Other options or pushes are fitted anew.
+fn goes_on(pushes: &Path, out: &Path, options: &[&str], page: &str) {
+    let files = ["heavy", "plate"].map(|name| out.join(name).join("fit.json"));
+    let before = files
+        .each_ref()
+        .map(|file| fs::read_to_string(file).unwrap());
+    let kept = |more: &[&str]| {
+        let report = out.join("fit.html");
+        let run = fit(pushes, out)
+            .args(options)
+            .arg("--report")
+            .arg(report)
+            .args(more)
+            .output();
+        let told = String::from_utf8(run.unwrap().stderr).unwrap();
+        ["heavy", "plate"].map(|name| told.contains(&format!("{name}: this fit is of the same")))
+    };
+    fs::remove_file(&files[1]).unwrap();
+    assert_eq!(kept(&[]), [true, false]);
+    assert_eq!(
+        files
+            .each_ref()
+            .map(|file| fs::read_to_string(file).unwrap()),
+        before
+    );
+    assert_eq!(fs::read_to_string(out.join("fit.html")).unwrap(), page);
+    assert_eq!(kept(&["--seed", "1"]), [false, false]);
+    let log = pushes.join("heavy_1/log.csv");
+    let rows = fs::read_to_string(&log).unwrap();
+    let fewer = rows.trim_end().rsplit_once('\n').unwrap().0;
+    fs::write(&log, fewer).unwrap();
+    assert_eq!(kept(&["--seed", "1"]), [false, true]);
+}
+
 #[test]
 fn objects_are_fitted_on_their_own() {
     let folder = pushes("fit-objects", 4);
@@ -244,6 +291,7 @@ fn objects_are_fitted_on_their_own() {
         assert_eq!(scene(&out.join(name)), scene(&alone));
     }
     assert!(!out.join("fit.json").exists());
+    goes_on(&pushes, &out, &options, &page);
 
     // one push of an object is too few, found before any fit
     fs::remove_dir_all(pushes.join("plate_08")).unwrap();
