@@ -77,7 +77,6 @@ pub fn pairs(result: &FitResult) -> Option<Block> {
             axis_labels: [a, b].map(axis),
             mark: Some([a, b].map(|fitted| fitted.prior_value)),
             sets: vec![set],
-            ..ScatterPlot::default()
         };
         plot.drawing()
     };
@@ -140,7 +139,7 @@ pub fn populations(fit: &Fit) -> Block {
                 "{}: R-hat {:.3}, {:.0} effective samples",
                 chain.name, chain.split_rhat, chain.effective_samples
             ),
-            label: "mean (prior spreads)".to_owned(),
+            label: "mean".to_owned(),
             least_span: 1.0,
             curves: chain
                 .population_means
@@ -156,11 +155,11 @@ pub fn populations(fit: &Fit) -> Block {
         time_label: "tenth of the moves that count".to_owned(),
         panels: fit.chains.iter().map(panel).collect(),
         columns: 2,
-        panel_size: [441.0, 120.0],
+        panel_size: [441.0, 130.0],
         ..TimeFigure::default()
     };
-    let caption = "Mean of each of the four populations, which start apart and move on their own. Where they agree and do not wander, \
-        the posterior is known.";
+    let caption = "Mean of each of the four populations in standard deviations of the prior; 0 is the nominal value. They start and move \
+        on their own. Where they agree and do not wander, the posterior is known.";
     let figure = Block::Figure(figure.drawing(), caption.to_owned());
     Block::Details("Convergence of the populations".to_owned(), vec![figure])
 }

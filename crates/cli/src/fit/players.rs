@@ -32,7 +32,10 @@ pub fn players(result: &FitResult, pushes: [&[Push]; 2]) -> Result<Vec<Section>,
         if let [push] = named.collect::<Vec<_>>()[..] {
             sections.push(Section {
                 title: format!("{}: largest error of {title}", push.name),
-                blocks: vec![player(push, &result.posterior.worst[k])?],
+                blocks: vec![
+                    player(push, &result.posterior.worst[k])?,
+                    Block::Note("Predictions know the first pose and the pusher's way.".to_owned()),
+                ],
             });
         }
     }
@@ -69,5 +72,6 @@ fn player(push: &Push, poses: &[Option<[f64; 3]>]) -> Result<Block, RunError> {
         (run.name, run.colour) = (name.to_owned(), colour);
     }
     playback.lowest_first.clear();
+    playback.poster = push.log.len() - 1;
     Ok(Block::Playback(Box::new(playback)))
 }
