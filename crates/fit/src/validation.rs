@@ -124,6 +124,9 @@ pub fn cross_validate(
 ///
 /// # Errors
 /// A push that cannot be simulated, or does not go with the fit.
+///
+/// # Panics
+/// If `fit` was read from a file, which has no samples of the posterior.
 pub fn predict(
     pushes: &[Push],
     fit: &Fit,
