@@ -59,14 +59,14 @@ struct FitResult {
     /// The pushes of `--test`, predicted by this fit; none where there are none.
     #[serde(skip_serializing_if = "Option::is_none")]
     test: Option<CrossValidation>,
-    /// What only a page shows.
+    /// Draws and predicted poses, which only a page shows.
     #[serde(skip)]
     posterior: Posterior,
     #[serde(skip)]
     players: Vec<Section>,
 }
 
-/// What is asked of the fit of each object.
+/// Options of the fit of each object.
 #[derive(Debug)]
 struct Task {
     options: FitOptions,

@@ -195,7 +195,7 @@ fn logs_are_fitted_with_one_scene() {
 }
 
 /// A call that was interrupted after the first object goes on with the second one, and ends as if
-/// it had made both. Other options or pushes are fitted anew.
+/// it had made both. Other options or pushes are fitted again.
 fn goes_on(pushes: &Path, out: &Path, options: &[&str], page: &str) {
     let files = ["heavy", "plate"].map(|name| out.join(name).join("fit.json"));
     let before = files
