@@ -104,10 +104,10 @@ def scene_of(scene: Scene | str | os.PathLike[str]) -> Scene:
     return scene if isinstance(scene, Scene) else load_scene(scene)
 
 
-def log_of(log: Any, scene: Scene | None = None) -> Columns:
+def log_of(log: Any, scene: Scene | None = None, topics: Topics | None = None) -> Columns:
     """Returns the columns of a log given as a path, a mapping or a data frame."""
     if isinstance(log, str | os.PathLike):
-        return load_log(log, scene=scene)
+        return load_log(log, scene=scene, topics=topics)
     return columns_of(log, "the log")
 
 

@@ -83,13 +83,14 @@ def fit(
 
     ``pushes``: at least two pushes, as experiment folders (``scene.toml``, ``log.csv`` or
     ``log.mcap``), folders of such folders, results of :func:`stickslip.simulate`, or pairs of a
-    scene and a log. All scenes must have the same first guess. ``free``: parameters to learn, of
-    ``mu_s``, ``mu_p``, ``mu_f``, ``tripod_radius``, ``centre_of_friction``, ``support``,
-    ``outline_scale``, ``outline_offset``, ``pusher_offset``, ``latency``; none: ``mu_p`` and all
-    that the first scene leaves open of ``support``. ``folds``: number of parts in the
-    cross-validation, each predicted by a fit to the others; 0: none; None: 4, or 2 for fewer than 8
-    pushes, or 0 for fewer than 4. ``topics``: see :func:`stickslip.load_log`. ``progress``: gets the
-    vectors of parameters tried and an upper limit of them, at which it ends.
+    scene and a log, each also as a path: ``[("scene.toml", bag) for bag in bags]``. All scenes must
+    have the same first guess. ``free``: parameters to learn, of ``mu_s``, ``mu_p``, ``mu_f``,
+    ``tripod_radius``, ``centre_of_friction``, ``support``, ``outline_scale``, ``outline_offset``,
+    ``pusher_offset``, ``latency``; none: ``mu_p`` and all that the first scene leaves open of
+    ``support``. ``folds``: number of parts in the cross-validation, each predicted by a fit to the
+    others; 0: none; None: 4, or 2 for fewer than 8 pushes, or 0 for fewer than 4. ``topics``: see
+    :func:`stickslip.load_log`. ``progress``: gets the vectors of parameters tried and an upper
+    limit of them, at which it ends.
 
     Reasons to doubt the fit are issued as :class:`stickslip.Warning` and kept as ``warnings``.
     Ctrl-C ends the call. The numbers have the bits of the program's ``fit.json``, on any number of threads.
@@ -138,7 +139,7 @@ def _pushes(item: Push, scene_name: str, topics: Topics | None) -> list[tuple[st
         return [(None, item.scene, item.log)]
     if isinstance(item, tuple) and len(item) == 2:
         scene = scene_of(item[0])
-        return [(None, scene, log_of(item[1], scene))]
+        return [(None, scene, log_of(item[1], scene, topics))]
     if not isinstance(item, str | os.PathLike):
         raise Error(f"a push is {item!r}; give a folder, a simulation, or a pair of a scene and a log")
     folders = experiments(Path(item), scene_name)

@@ -4,6 +4,8 @@ import os
 import signal
 from pathlib import Path
 
+import stickslip
+
 
 def square(x, **_):
     """A result, or an error for 13."""
@@ -31,6 +33,11 @@ def die(x):
 def writers(x, folder):
     """The worker's process, and the number of files of the study that it sees."""
     return {"pid": os.getpid(), "files": len(list(Path(folder).iterdir()))}
+
+
+def fit_object(folder):
+    """The fit of one object, as the guide has it."""
+    return stickslip.fit(folder, ["mu_p"], folds=0, threads=1).result
 
 
 def no_json(x):

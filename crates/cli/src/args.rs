@@ -8,6 +8,7 @@ use stickslip_evaluation::Variant;
 
 use crate::arg_values::{ForceArgs, Rows, ThreadArgs, particles, positive};
 use crate::camera::{self, CalibrateArgs, PrintArgs, RenderArgs, TrackArgs};
+use crate::compare::SceneArgs;
 use crate::fit_args::FitArgs;
 use crate::given::GivenArgs;
 use crate::live_args::LiveArgs;
@@ -141,12 +142,9 @@ pub struct CompareArgs {
     /// Seeds 0 to K - 1 of the particle filter, K at most 10000; scores are medians
     #[arg(long, value_name = "K", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=10_000))]
     pub seeds: u64,
-    /// Scene file in each folder
-    #[arg(long, value_name = "FILE", default_value = "scene.toml")]
-    pub scene_name: String,
-    /// One scene for all logs, a file or its folder; DIR may then be a log itself
-    #[arg(long, conflicts_with = "scene_name")]
-    pub scene: Option<PathBuf>,
+    /// Scenes of the logs
+    #[command(flatten)]
+    pub scenes: SceneArgs,
     /// Topics of the MCAP logs
     #[command(flatten)]
     pub topics: TopicArgs,

@@ -11,7 +11,7 @@ mod results;
 mod tables;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use anyhow::{Result, anyhow};
 use clap::CommandFactory;
@@ -24,12 +24,10 @@ use stickslip_report::Report;
 use crate::args::{CompareArgs, Program};
 use crate::experiment::{check_occlusion, check_sense, read_folder};
 use crate::files::{ready_file, write_report};
-use crate::given::scene_file;
-use crate::log_files::log_path;
 use crate::output::{show, talk};
 use crate::progress::{Work, bar};
 use crate::verdict::Verdict;
-pub use folders::{Scenes, expand, is_experiment};
+pub use folders::{SceneArgs, Scenes, expand, inputs, is_experiment};
 pub use results::{ComparedRun, ShownScores};
 use results::{Comparison, FolderResult, LostFolder};
 
@@ -57,16 +55,14 @@ struct Job {
 
 /// Runs the command.
 pub fn compare(args: &CompareArgs) -> Result<Verdict> {
-    let one = args.scene.as_deref().map(scene_file);
-    let scenes = match &one {
-        Some(scene) => Scenes::One(scene),
-        None => Scenes::Named(&args.scene_name),
-    };
+    let scenes = args.scenes.scenes();
     let folders = expand(&args.folders, scenes)?;
     if let Some(path) = &args.report {
-        let logs: Vec<PathBuf> = folders.iter().map(|folder| log_path(folder)).collect();
-        let inputs: Vec<&Path> = logs.iter().chain(&one).map(PathBuf::as_path).collect();
-        ready_file(path, &inputs)?;
+        let inputs = inputs(&folders, scenes);
+        ready_file(
+            path,
+            &inputs.iter().map(PathBuf::as_path).collect::<Vec<_>>(),
+        )?;
     }
     let pool = args.shared.threads.pool()?;
     let topics = args.topics.options(Program::command())?;

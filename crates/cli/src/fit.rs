@@ -1,8 +1,10 @@
 //! `stickslip fit`: learns parameters that a scene cannot know from many pushes.
 
+mod earlier;
 mod figures;
 mod object;
 mod page;
+mod players;
 mod tables;
 
 use std::io::Write;
@@ -11,18 +13,21 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, bail};
 use clap::CommandFactory;
 use rayon::prelude::*;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use stickslip_fit::{
-    CrossValidation, Fit, FitError, FitOptions, Parameter, Push, default_folds, doubts, predict,
+    CrossValidation, Fit, FitError, FitOptions, FittedParameter, Parameter, Push, default_folds,
+    doubts, predict,
 };
 use stickslip_formats::BagOptions;
-use stickslip_report::Report;
+use stickslip_report::{Report, Section};
 
+use self::earlier::{Posterior, digest, earlier};
 use self::object::{Object, objects};
 use self::page::page;
-use self::tables::{overview, text};
+use self::players::{players, worst};
+use self::tables::{overview, text, validations};
 use crate::args::Program;
-use crate::compare::expand;
+use crate::compare::{expand, inputs};
 use crate::experiment::{check_sense, experiment_name, read_folder, text_of};
 use crate::files::{Results, ready_file, ready_folder, refuse_inputs, write_report};
 use crate::fit_args::FitArgs;
@@ -34,9 +39,10 @@ use crate::verdict::Verdict;
 /// Names of the files of a fit.
 const SCENE: &str = "scene.toml";
 const JSON: &str = "fit.json";
+const POSTERIOR: &str = "posterior.json";
 
 /// Content of fit.json.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, Deserialize)]
 struct FitResult {
     /// Name of the object, where the pushes are of several.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -53,6 +59,18 @@ struct FitResult {
     /// The pushes of `--test`, predicted by this fit; none where there are none.
     #[serde(skip_serializing_if = "Option::is_none")]
     test: Option<CrossValidation>,
+    /// Draws and predicted poses, which only a page shows.
+    #[serde(skip)]
+    posterior: Posterior,
+    #[serde(skip)]
+    players: Vec<Section>,
+}
+
+/// Options of the fit of each object.
+#[derive(Debug)]
+struct Task {
+    options: FitOptions,
+    folds: usize,
 }
 
 /// Runs the command.
@@ -60,15 +78,15 @@ pub fn fit(args: &FitArgs) -> Result<Verdict> {
     if !args.free.is_empty() {
         Parameter::parse_list(&args.free)?; // before anything is read
     }
-    let folders = expand(&args.folders, args.scenes())?;
+    let scenes = args.scenes.scenes();
+    let folders = expand(&args.folders, scenes)?;
     let test_folders = test_folders(args, &folders)?;
     let topics = args.topics.options(Program::command())?;
     let pool = args.threads.pool()?;
-    let all = folders.iter().chain(&test_folders);
-    let scenes: Vec<PathBuf> = all.map(|folder| args.scenes().of(folder)).collect();
-    let scenes: Vec<&Path> = scenes.iter().map(PathBuf::as_path).collect();
+    let read = inputs(&[&folders[..], &test_folders].concat(), scenes);
+    let read: Vec<&Path> = read.iter().map(PathBuf::as_path).collect();
     if let Some(report) = &args.report {
-        ready_file(report, &scenes)?;
+        ready_file(report, &read)?;
     }
     ready_folder(&args.out)?;
 
@@ -76,7 +94,7 @@ pub fn fit(args: &FitArgs) -> Result<Verdict> {
     let (test, of_test) = pool.install(|| read_pushes(args, &topics, &test_folders))?;
     let objects = objects(&args.out, (folders, pushes), test)?;
     for object in &objects {
-        refuse_inputs(&object.out.join(SCENE), &scenes)?;
+        refuse_inputs(&object.out.join(SCENE), &read)?;
         if let (Some(name), 0..2) = (&object.name, object.pushes.len()) {
             let (pushes, least) = (object.pushes.len(), 2);
             return Err(FitError::TooFewPushes { pushes, least }).context(name.clone());
@@ -84,8 +102,10 @@ pub fn fit(args: &FitArgs) -> Result<Verdict> {
     }
     let mut results = Vec::new();
     for object in &objects {
-        let result = pool.install(|| learn(args, object))?;
-        write(args, object, &result)?;
+        let mut result = pool.install(|| learnt(args, object))?;
+        if args.report.is_some() {
+            result.players = players(&result, [&object.pushes, &object.test])?;
+        }
         if !args.json {
             let blank = if results.is_empty() { "" } else { "\n" };
             show(format!("{blank}{}", text(&result)))?;
@@ -102,42 +122,85 @@ pub fn fit(args: &FitArgs) -> Result<Verdict> {
         let path = write_report(path.clone(), &page(&results, args.seed))?;
         talk(format_args!("wrote {}", path.display()));
     }
-    for object in &objects {
-        let [scene, json] = [SCENE, JSON].map(|name| object.out.join(name));
-        talk(format_args!(
-            "wrote {} and {}",
-            scene.display(),
-            json.display()
-        ));
-    }
     Ok(verdict.and(of_test))
 }
 
-/// Writes the fitted scene and fit.json.
-fn write(args: &FitArgs, object: &Object, result: &FitResult) -> Result<()> {
-    let first = args.scenes().of(&object.folders[0]);
-    let scene = result.fit.scene_text(
-        &text_of(&first, "scene")?,
+/// The fit to the pushes of `object`, in its folder: the one that is there, if its pushes and
+/// options are these, or a new one.
+fn learnt(args: &FitArgs, object: &Object) -> Result<FitResult> {
+    let first = args.scenes.scenes().of(&object.folders[0]);
+    let scene = text_of(&first, "scene")?;
+    let task = Task {
+        options: FitOptions {
+            parameters: Parameter::list_or_default(&args.free, &object.pushes[0].setup)?,
+            seed: args.seed,
+        },
+        folds: args.folds.unwrap_or(default_folds(object.pushes.len())),
+    };
+    let digest = digest(&task, object, &scene);
+    if let Some(result) = earlier(object, &digest) {
+        talk(format_args!(
+            "{}: this fit is of the same pushes and options; it is not made again",
+            object.out.display()
+        ));
+        return Ok(result);
+    }
+    let result = learn(task, object)?.with_posterior(digest);
+    let fit = &result.fit;
+    let scene = fit.scene_text(
+        &scene,
         &first.display().to_string(),
         result.cross_validation.as_ref(),
     )?;
-    let json = serde_json::to_string_pretty(&result)? + "\n";
     let mut results = Results::default();
-    results.add(object.out.join(SCENE), |file| {
-        file.write_all(scene.as_bytes())
-    })?;
-    results.add(object.out.join(JSON), |file| {
-        file.write_all(json.as_bytes())
-    })?;
-    results.place().map(drop)
+    for (name, text) in [
+        (SCENE, scene),
+        (JSON, serde_json::to_string_pretty(&result)? + "\n"),
+        (POSTERIOR, serde_json::to_string(&result.posterior)? + "\n"),
+    ] {
+        results.add(object.out.join(name), |file| {
+            file.write_all(text.as_bytes())
+        })?;
+    }
+    for path in results.place()? {
+        talk(format_args!("wrote {}", path.display()));
+    }
+    Ok(result)
 }
 
-/// The page about a fit that a caller made.
+impl FitResult {
+    /// Adds what a page shows besides.
+    fn with_posterior(mut self, digest: String) -> Self {
+        let mut worst_poses = [Vec::new(), Vec::new()];
+        for (k, _, validation) in validations(&self) {
+            let poses = worst(validation).into_iter().flat_map(|push| &push.poses);
+            let poses = poses.map(|pose| pose.map(|pose| [pose.x, pose.y, pose.theta]));
+            worst_poses[k] = poses.collect();
+        }
+        let draws = self.fit.draws().into_iter();
+        self.posterior = Posterior {
+            digest,
+            draws: draws
+                .map(|(name, draws)| (name.to_owned(), draws))
+                .collect(),
+            worst: worst_poses,
+        };
+        self
+    }
+
+    /// Posterior draws of a parameter.
+    fn draws(&self, fitted: &FittedParameter) -> &[f64] {
+        let draws = self.posterior.draws.get(fitted.name());
+        draws.map_or(&[], Vec::as_slice)
+    }
+}
+
+/// The page about a fit to `pushes` that a caller made.
 pub fn page_of(
+    pushes: &[Push],
     fit: &Fit,
     cross_validation: Option<&CrossValidation>,
-    warnings: &[String],
-    seed: u64,
+    (warnings, seed): (&[String], u64),
 ) -> Report {
     let result = FitResult {
         object: None,
@@ -147,7 +210,12 @@ pub fn page_of(
         cross_validation: cross_validation.cloned(),
         warnings: warnings.to_vec(),
         test: None,
+        posterior: Posterior::default(),
+        players: Vec::new(),
     };
+    let mut result = result.with_posterior(String::new());
+    // the pushes were simulated for the fit
+    result.players = players(&result, [pushes, &[]]).unwrap_or_default();
     page(&[result], seed)
 }
 
@@ -157,7 +225,7 @@ fn test_folders(args: &FitArgs, folders: &[PathBuf]) -> Result<Vec<PathBuf>> {
     if args.test.is_empty() {
         return Ok(Vec::new());
     }
-    let test = expand(&args.test, args.scenes())?;
+    let test = expand(&args.test, args.scenes.scenes())?;
     let seen: Vec<PathBuf> = folders.iter().flat_map(std::fs::canonicalize).collect();
     for folder in &test {
         if std::fs::canonicalize(folder).is_ok_and(|folder| seen.contains(&folder)) {
@@ -172,7 +240,7 @@ fn test_folders(args: &FitArgs, folders: &[PathBuf]) -> Result<Vec<PathBuf>> {
 
 /// The fit to the pushes of `object`, and its accuracy on each of them left out, and on its pushes
 /// of `--test`.
-fn learn(args: &FitArgs, object: &Object) -> Result<FitResult> {
+fn learn(Task { options, folds }: Task, object: &Object) -> Result<FitResult> {
     let Object {
         name,
         folders,
@@ -180,15 +248,11 @@ fn learn(args: &FitArgs, object: &Object) -> Result<FitResult> {
         test,
         ..
     } = object;
-    let options = &FitOptions {
-        parameters: Parameter::list_or_default(&args.free, &pushes[0].setup)?,
-        seed: args.seed,
-    };
+    let options = &options;
     let of_object = name.as_ref().map(|name| format!(" of {name}"));
     let count = counted(pushes.len() as u64, "push");
     let progress = stage(format!("fitting {count}{}", of_object.unwrap_or_default()));
     let fit = stickslip_fit::fit(pushes, options, &|_, _| ())?;
-    let folds = args.folds.unwrap_or(default_folds(pushes.len()));
     progress.set_message(format!(
         "predicting each of {folds} parts by a fit to the others"
     ));
@@ -203,11 +267,13 @@ fn learn(args: &FitArgs, object: &Object) -> Result<FitResult> {
             .iter()
             .map(|path| path.display().to_string())
             .collect(),
-        seed: args.seed,
+        seed: options.seed,
         warnings: doubts(pushes, &fit),
         fit,
         cross_validation,
         test,
+        posterior: Posterior::default(),
+        players: Vec::new(),
     })
 }
 
@@ -219,7 +285,7 @@ fn read_pushes(
     folders: &[PathBuf],
 ) -> Result<(Vec<Push>, Verdict)> {
     let read = |folder: &PathBuf| {
-        let (experiment, verdict) = read_folder(folder, &args.scenes().of(folder), topics)
+        let (experiment, verdict) = read_folder(folder, &args.scenes.scenes().of(folder), topics)
             .with_context(|| folder.display().to_string())?;
         check_sense(&args.force, &experiment).with_context(|| folder.display().to_string())?;
         let push = Push {

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use crate::arg_values::{ForceArgs, ThreadArgs};
-use crate::compare::Scenes;
+use crate::compare::SceneArgs;
 use crate::topic_args::TopicArgs;
 
 /// Arguments of `stickslip fit`.
@@ -35,9 +35,9 @@ pub struct FitArgs {
     /// Seed of all random numbers
     #[arg(long, default_value_t = 0)]
     pub seed: u64,
-    /// Scene file in each folder
-    #[arg(long, value_name = "FILE", default_value = "scene.toml")]
-    pub scene_name: String,
+    /// Scenes of the logs
+    #[command(flatten)]
+    pub scenes: SceneArgs,
     /// Topics of the MCAP logs
     #[command(flatten)]
     pub topics: TopicArgs,
@@ -50,11 +50,4 @@ pub struct FitArgs {
     /// Print the content of fit.json, of several objects as a list
     #[arg(long)]
     pub json: bool,
-}
-
-impl FitArgs {
-    /// Which scene is that of a push.
-    pub fn scenes(&self) -> Scenes<'_> {
-        Scenes::Named(&self.scene_name)
-    }
 }

@@ -110,7 +110,7 @@ fn log_beside(scene: &Path, command: &str) -> Result<Given> {
 }
 
 /// The error about two scenes for one log.
-pub fn two_scenes(first: &Path, second: &Path, command: &str) -> anyhow::Error {
+fn two_scenes(first: &Path, second: &Path, command: &str) -> anyhow::Error {
     hinted(
         format!(
             "{} and {}: these are two scenes",

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use anyhow::Result;
 use stickslip::{Log, Occlusion, Setup};
 use stickslip_evaluation::{ScoredRun, Variant};
-use stickslip_fit::{CrossValidation, Fit};
+use stickslip_fit::{CrossValidation, Fit, Push};
 use stickslip_formats::{BagOptions, Experiment, LogWarning};
 use stickslip_report::{Report, ReportedExperiment, ReportedRun};
 
@@ -104,14 +104,15 @@ pub fn comparison_page(runs: &[ComparedRun], particles: usize) -> String {
     compare::page_of(runs, particles).to_html()
 }
 
-/// The page of `stickslip fit --report` about a fit.
+/// The page of `stickslip fit --report` about a fit to `pushes`.
 pub fn fit_page(
+    pushes: &[Push],
     fit: &Fit,
     cross_validation: Option<&CrossValidation>,
     warnings: &[String],
     seed: u64,
 ) -> String {
-    fit::page_of(fit, cross_validation, warnings, seed).to_html()
+    fit::page_of(pushes, fit, cross_validation, (warnings, seed)).to_html()
 }
 
 /// The compared method of a name, as in the JSON of `stickslip compare`.

@@ -128,8 +128,8 @@ fn ranks_of_the_truth_are_uniform() {
 
 /// The parameters that are free by default.
 #[test]
-#[ignore = "takes minutes, prints ranks"]
+#[ignore = "takes an hour, prints ranks"]
 fn ranks_of_all_that_is_free_by_default() {
     let setup = read_scene(SCENE, "scene.toml").expect("a scene");
-    print(&ranks(&Parameter::default_list(&setup), &PLACES, 20));
+    print(&ranks(&Parameter::default_list(&setup), &PLACES, 45));
 }

@@ -1,5 +1,7 @@
 //! Samples of several ensembles: [`Chain`].
 
+use std::ops::Range;
+
 /// The walkers of several independent ensembles, move by move.
 #[derive(Clone, Debug)]
 pub(crate) struct Chain {
@@ -70,24 +72,52 @@ impl Chain {
             .collect()
     }
 
-    /// The largest split R̂ of the coordinates (Gelman et al., Bayesian Data Analysis, 3rd ed.,
-    /// 11.4): the halves of every ensemble's way are compared; 1 where all agree.
+    /// The largest split R̂ of the coordinates.
     pub fn split_rhat(&self) -> f64 {
-        let rhat = |[within, between]: [f64; 2]| (1.0 + between / within).sqrt();
-        let of = (0..self.dimension).map(|k| self.variances(k).map_or(f64::INFINITY, rhat));
+        let of = (0..self.dimension).map(|k| self.split_rhat_of(k));
         of.fold(1.0, f64::max)
     }
 
-    /// The smallest number of independent samples, over the coordinates, whose mean would scatter
-    /// as those of the halves do.
-    pub fn effective_samples(&self) -> f64 {
+    /// Split R̂ of a coordinate (Gelman et al., Bayesian Data Analysis, 3rd ed., 11.4): the halves
+    /// of every ensemble's way are compared; 1 where all agree.
+    pub fn split_rhat_of(&self, coordinate: usize) -> f64 {
+        let rhat = |[within, between]: [f64; 2]| (1.0 + between / within).sqrt();
+        self.variances(coordinate).map_or(f64::INFINITY, rhat)
+    }
+
+    /// Number of independent samples of a coordinate whose mean would scatter as those of the
+    /// halves do.
+    pub fn effective_samples_of(&self, coordinate: usize) -> f64 {
         let groups = (2 * self.ensembles) as f64;
-        let of = (0..self.dimension).map(|k| {
-            self.variances(k).map_or(0.0, |[within, between]| {
-                groups * within / between.max(f64::MIN_POSITIVE)
-            })
-        });
+        let worth = |[within, between]: [f64; 2]| groups * within / between.max(f64::MIN_POSITIVE);
+        let worth = self.variances(coordinate).map_or(0.0, worth);
+        worth.min(self.samples.len() as f64)
+    }
+
+    /// The fewest of any coordinate.
+    pub fn effective_samples(&self) -> f64 {
+        let of = (0..self.dimension).map(|k| self.effective_samples_of(k));
         of.fold(self.samples.len() as f64, f64::min)
+    }
+
+    /// Means of a coordinate over each ensemble, in so many equal parts of its way.
+    pub fn ensemble_means_of(&self, coordinate: usize, parts: usize) -> Vec<Vec<f64>> {
+        let moves = self.accepted.len();
+        let mean = |ensemble: usize, part: usize| {
+            let moves = part * moves / parts..(part + 1) * moves / parts;
+            mean_and_variance(&self.values(ensemble, moves, coordinate)).0
+        };
+        (0..self.ensembles)
+            .map(|ensemble| (0..parts).map(|part| mean(ensemble, part)).collect())
+            .collect()
+    }
+
+    /// Values of a coordinate in some moves of an ensemble.
+    fn values(&self, ensemble: usize, moves: Range<usize>, coordinate: usize) -> Vec<f64> {
+        let own = self.walkers / self.ensembles;
+        let walkers = |step: usize| &self.samples[step * self.walkers + ensemble * own..][..own];
+        let samples = moves.flat_map(walkers);
+        samples.map(|sample| sample[coordinate]).collect()
     }
 
     /// Variance of a coordinate within the halves of every ensemble's way, and between their means.
@@ -97,16 +127,10 @@ impl Chain {
         if half < 2 {
             return None;
         }
-        let own = self.walkers / self.ensembles;
         let (mut means, mut within) = (Vec::new(), 0.0);
         for ensemble in 0..self.ensembles {
             for first in [0, moves - half] {
-                let walkers = |step: usize| {
-                    let from = step * self.walkers + ensemble * own;
-                    &self.samples[from..from + own]
-                };
-                let samples = (first..first + half).flat_map(walkers);
-                let values: Vec<f64> = samples.map(|sample| sample[coordinate]).collect();
+                let values = self.values(ensemble, first..first + half, coordinate);
                 let (mean, variance) = mean_and_variance(&values);
                 means.push(mean);
                 within += variance / (2 * self.ensembles) as f64;
@@ -155,6 +179,18 @@ mod tests {
         assert!(chain(0.5, [0.0; 4]).split_rhat() < 1.01);
         let apart = chain(0.5, [0.0, 0.0, 0.0, 1.0]).split_rhat();
         assert!((apart - 1.10_f64).abs() < 0.02, "{apart}");
+
+        // so do their means in each quarter of the way
+        let means = chain(0.5, [0.0, 0.0, 0.0, 1.0]).ensemble_means_of(0, 4);
+        for (means, place) in means.iter().zip([0.0, 0.0, 0.0, 1.0]) {
+            assert_eq!(means.len(), 4);
+            // 1000 moves with memory 0.5 are worth 333
+            assert!(
+                means
+                    .iter()
+                    .all(|mean| (mean - place).abs() < 4.0 / 333.0_f64.sqrt())
+            );
+        }
     }
 
     /// A chain with memory a is worth n (1 - a) / (1 + a) independent samples.
@@ -162,7 +198,7 @@ mod tests {
     fn effective_samples_are_those_of_chains_with_a_memory() {
         for memory in [0.0, 0.9] {
             let expected = 16_000.0 * (1.0 - memory) / (1.0 + memory);
-            let found = chain(memory, [0.0; 4]).effective_samples();
+            let found = chain(memory, [0.0; 4]).effective_samples_of(0);
             // seven differences of means know their variance to a factor of about three
             assert!(
                 (0.3..4.0).contains(&(found / expected)),

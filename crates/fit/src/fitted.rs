@@ -1,6 +1,6 @@
 //! Fit of parameters to pushes: [`fit`].
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use stickslip::{Setup, quantile};
 use stickslip_dynamics::ShapeError;
 use stickslip_filter::Streams;
@@ -37,8 +37,14 @@ pub struct FitOptions {
     pub seed: u64,
 }
 
+/// Names of the two numbers of the noise, in the order of a vector.
+const NOISE_NAMES: [&str; 2] = ["camera_scale", "drift"];
+
+/// Parts of the populations' ways in which their means are compared.
+const PARTS: usize = 10;
+
 /// Result of a fit to some pushes.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Fit {
     /// Number of pushes.
     pub pushes: usize,
@@ -50,23 +56,23 @@ pub struct Fit {
     pub noise: Noise,
     /// Facts about the exploration of the posterior.
     pub sampling: Sampling,
+    /// Agreement of the populations on each parameter, then on the two numbers of `noise`.
+    pub chains: Vec<Agreement>,
     /// Pushes that teach nothing, since nothing touches the object, each with what was found.
     pub left_out: Vec<String>,
-    /// Samples of the posterior, as [`Posterior`] takes them.
+    /// Samples of the posterior, as [`Posterior`] takes them; none in a fit that was read.
     #[serde(skip)]
     pub(crate) samples: Vec<Vec<f64>>,
 }
 
 /// A parameter before and after.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FittedParameter {
-    /// Its name.
-    pub name: &'static str,
     /// The parameter.
-    #[serde(skip)]
+    #[serde(rename = "name")]
     pub parameter: Parameter,
     /// Symbol of its unit; empty for a bare number.
-    pub unit: &'static str,
+    pub unit: String,
     /// The posterior's mean, of the logarithm where the prior is of that.
     pub value: f64,
     /// Its standard deviation.
@@ -89,7 +95,7 @@ pub struct FittedParameter {
 }
 
 /// Facts about the exploration of the posterior.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Sampling {
     /// Vectors of parameters with which all pushes were predicted.
     pub vectors: u64,
@@ -104,6 +110,20 @@ pub struct Sampling {
     pub settled: bool,
     /// Steps without a certified solution in the predictions with the fitted values.
     pub unsolved: u32,
+}
+
+/// Agreement of the populations on one number.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Agreement {
+    /// Name of the parameter, `camera_scale` or `drift`.
+    pub name: String,
+    /// Split R̂.
+    pub split_rhat: f64,
+    /// Independent samples that the chains are worth.
+    pub effective_samples: f64,
+    /// Mean of each population in each tenth of its way, in standard deviations of the prior from
+    /// its centre.
+    pub population_means: Vec<Vec<f64>>,
 }
 
 /// Learns the free parameters of `options` from `pushes`; `progress` gets what was done of how
@@ -183,6 +203,7 @@ pub(crate) fn fit_prepared<'a>(
         noise: posterior.noise(&means),
         left_out: Vec::new(),
         sampling: sampling(&chain, sampled),
+        chains: chains(&chain, options),
         samples,
     };
     Ok(fit.with_unsolved(&posterior, &means))
@@ -198,9 +219,8 @@ fn fitted(
     let value = prior.value(mean);
     let end = |q| prior.value(quantile(samples, q).expect("there are samples"));
     FittedParameter {
-        name: parameter.name(),
         parameter,
-        unit: parameter.unit(),
+        unit: parameter.unit().to_owned(),
         value,
         std: prior.spread(value, std),
         interval_90: [0.05, 0.95].map(end),
@@ -239,6 +259,27 @@ fn sampling(chain: &Chain, vectors: u64) -> Sampling {
     }
 }
 
+/// Agreement of the populations on the parameters of `options` and on the noise.
+fn chains(chain: &Chain, options: &FitOptions) -> Vec<Agreement> {
+    let parameters = options.parameters.iter().map(|parameter| parameter.name());
+    let names = parameters.chain(NOISE_NAMES);
+    let of = |(k, name): (usize, &str)| Agreement {
+        name: name.to_owned(),
+        split_rhat: chain.split_rhat_of(k),
+        effective_samples: chain.effective_samples_of(k),
+        population_means: chain.ensemble_means_of(k, PARTS),
+    };
+    names.enumerate().map(of).collect()
+}
+
+impl FittedParameter {
+    /// Its name.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        self.parameter.name()
+    }
+}
+
 impl Fit {
     /// Writes the fitted values into a setup.
     ///
@@ -260,7 +301,7 @@ impl Fit {
         let of_parameters = self.parameters.iter().enumerate().map(|(k, fitted)| {
             let values = self.samples.iter();
             let values = values.map(|sample| fitted.prior.value(sample[k]));
-            (fitted.name, values.collect())
+            (fitted.name(), values.collect())
         });
         let noise = |of: fn(&Noise) -> f64| -> Vec<f64> {
             let samples = self.samples.iter();
@@ -268,9 +309,10 @@ impl Fit {
             noises.map(|noise| of(&noise)).collect()
         };
         let of_noise = [
-            ("camera_scale", noise(|noise| noise.camera_scale)),
-            ("drift", noise(|noise| noise.drift)),
+            noise(|noise| noise.camera_scale),
+            noise(|noise| noise.drift),
         ];
+        let of_noise = NOISE_NAMES.into_iter().zip(of_noise);
         of_parameters.chain(of_noise).collect()
     }
 

@@ -23,7 +23,7 @@ mod validation;
 
 pub use doubts::doubts;
 pub use error::FitError;
-pub use fitted::{Fit, FitOptions, FittedParameter, Sampling, fit};
+pub use fitted::{Agreement, Fit, FitOptions, FittedParameter, Sampling, fit};
 pub use likelihood::Noise;
 pub use parameter::Parameter;
 pub use prior::Prior;

@@ -11,7 +11,7 @@
 //! Innovations are taken for Student-t, for frames that are off; a tenth of the pushes may drift
 //! four times as much.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use stickslip_filter::Draw;
 
 /// Degrees of freedom of innovations.
@@ -27,7 +27,7 @@ pub(crate) const STRAY_FACTOR: f64 = 4.0;
 const STEPS_PER_MEMORY: f64 = 4.0;
 
 /// Deviation of measured poses from predicted ones.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Noise {
     /// Factor of the camera's standard deviations in the scene.
     pub camera_scale: f64,

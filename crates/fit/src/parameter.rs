@@ -2,6 +2,7 @@
 
 use std::f64::consts::FRAC_PI_3;
 
+use serde::{Deserialize, Serialize};
 use stickslip::{Setup, Surface};
 use stickslip_dynamics::{Friction, Lanes, Part, Shape, ShapeError, Support};
 use stickslip_formats::nearest;
@@ -15,8 +16,9 @@ const SCALE_STD: f64 = 0.02;
 /// Standard deviation of the place of an outline about the tracked frame (m).
 const OFFSET_STD: f64 = 1e-3;
 
-/// A number of a scene that pushes can teach.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// A number of a scene that pushes can teach; in files, its name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(into = "&'static str", try_from = "String")]
 pub enum Parameter {
     /// μ_s, friction between object and support.
     MuS,
@@ -83,6 +85,22 @@ const GROUPS: [(&str, &[Parameter]); 10] = [
     ("pusher_offset", &[Parameter::PusherX, Parameter::PusherY]),
     ("latency", &[Parameter::Latency]),
 ];
+
+impl From<Parameter> for &'static str {
+    fn from(parameter: Parameter) -> Self {
+        parameter.name()
+    }
+}
+
+impl TryFrom<String> for Parameter {
+    type Error = String;
+
+    fn try_from(name: String) -> Result<Self, String> {
+        let mut all = GROUPS.iter().flat_map(|(_, group)| *group);
+        let found = all.find(|parameter| parameter.name() == name);
+        found.copied().ok_or(format!("`{name}` is no parameter"))
+    }
+}
 
 impl Parameter {
     /// Its name in files.

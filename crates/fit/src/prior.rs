@@ -1,10 +1,10 @@
 //! Prior of a parameter before any push: [`Prior`].
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Distribution of a parameter before any push. A whitened coordinate z is standard normal under
 /// it.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum Prior {
     /// ln x is normal: positive numbers that are known to some per cent.

@@ -123,7 +123,10 @@ impl Fit {
         let value = |fitted: &FittedParameter| {
             let said = format!(
                 "{} = {:.6} +- {:.6} {}",
-                fitted.name, fitted.value, fitted.std, fitted.unit
+                fitted.name(),
+                fitted.value,
+                fitted.std,
+                fitted.unit
             );
             let hint = if fitted.determined {
                 ""
@@ -147,7 +150,7 @@ impl Fit {
                 .push("the chains have not converged: the spreads are those before the fit".into());
         }
         if !left.is_empty() {
-            let names: Vec<&str> = left.iter().map(|fitted| fitted.name).collect();
+            let names: Vec<&str> = left.iter().map(|fitted| fitted.name()).collect();
             lines.push(format!("not identifiable from them: {}", names.join(", ")));
         }
         lines

@@ -1,6 +1,6 @@
 //! Accuracy of a fit on pushes that it has not seen: [`cross_validate`].
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use stickslip::{Estimate, Method, NominalPrediction, RunOptions, Setup, quantile, run, wrapped};
 use stickslip_dynamics::Pose;
 use stickslip_evaluation::{Reference, Scores, score};
@@ -24,7 +24,7 @@ const INTERVAL: [f64; 2] = [0.05, 0.95];
 const FIRST_NOISE: u64 = 1 << 40;
 
 /// Pushes predicted blind by fits that have not seen them.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CrossValidation {
     /// Parts that the pushes were dealt into, one after the other.
     pub folds: usize,
@@ -44,7 +44,7 @@ pub struct CrossValidation {
 }
 
 /// One push, predicted from its first pose by a fit to others.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct HeldOut {
     /// Its name.
     pub push: String,
@@ -53,13 +53,19 @@ pub struct HeldOut {
     /// Final position error of the unfitted scene, and of the median prediction of the posterior
     /// (mm).
     pub final_mm: [f64; 2],
-    /// Predicted minus measured position of both at the last measured pose (mm), x and y.
-    pub final_offset_mm: [[f64; 2]; 2],
+    /// Predicted minus measured x, y and θ of both at the last measured pose (mm); θ times the
+    /// radius of gyration.
+    pub final_offset_mm: [[f64; 3]; 2],
+    /// Ends of the 90 % interval of each of these three that the posterior gives (mm).
+    pub interval_90_mm: [[f64; 2]; 3],
     /// WMSE over all rows of both (mm).
     pub wmse_mm: [f64; 2],
     /// True for each of x, y and θ whose last measured value lies in the 90 % interval predicted
     /// for it.
     pub covered: [bool; 3],
+    /// Median prediction of the posterior, row by row of the log; none in a result that was read.
+    #[serde(skip)]
+    pub poses: Vec<Option<Pose>>,
 }
 
 /// Default number of parts that so many pushes are dealt into: 0, none, for fewer than four.
@@ -118,6 +124,9 @@ pub fn cross_validate(
 ///
 /// # Errors
 /// A push that cannot be simulated, or does not go with the fit.
+///
+/// # Panics
+/// If `fit` was read from a file, which has no samples of the posterior.
 pub fn predict(
     pushes: &[Push],
     fit: &Fit,
@@ -133,6 +142,7 @@ pub fn predict(
             predicted.final_mm[1] = predicted.final_mm[0];
             predicted.final_offset_mm[1] = predicted.final_offset_mm[0];
             predicted.wmse_mm[1] = predicted.wmse_mm[0];
+            predicted.poses.clear();
         }
         Ok(predicted)
     });
@@ -203,13 +213,16 @@ fn predict_held_out(
         [&of_unfitted, &of_fitted].map(|scores| score(scores).unwrap_or(f64::NAN))
     };
     let draw = Streams::new(options.seed).at(FIRST_NOISE + index as u64);
+    let intervals = intervals(push, &posterior, &fit.samples, &predictions, draw);
     Ok(HeldOut {
         push: push.push.name.clone(),
         fold,
         final_mm: of(|scores| scores.final_error_mm),
         final_offset_mm: [unfitted_offset_mm, final_offset_mm(push, &estimate)],
         wmse_mm: of(|scores| scores.wmse_mm),
-        covered: covered(push, &posterior, &fit.samples, &predictions, draw),
+        interval_90_mm: intervals.map(|interval| interval.map(|metres| 1e3 * metres)),
+        covered: intervals.map(|[low, high]| low <= 0.0 && 0.0 <= high),
+        poses: estimate.rows.iter().map(|row| row.pose).collect(),
     })
 }
 
@@ -246,11 +259,14 @@ fn median_poses(predictions: &[NominalPrediction]) -> Vec<Pose> {
     (0..predictions[0].poses.len()).map(median).collect()
 }
 
-/// Estimated minus measured position at the last measured pose (mm).
-fn final_offset_mm(push: &PreparedPush, estimate: &Estimate) -> [f64; 2] {
+/// Estimated minus measured x, y and θ, times the radius of gyration, at the last measured pose
+/// (mm).
+fn final_offset_mm(push: &PreparedPush, estimate: &Estimate) -> [f64; 3] {
     let (row, measured) = push.measured.last().expect("a prepared push has a pose");
     let estimated = estimate.rows[*row].pose.unwrap_or(*measured);
-    [estimated.x - measured.x, estimated.y - measured.y].map(|metres| 1e3 * metres)
+    let turn = push.push.setup.virtual_radius() * wrapped(estimated.theta - measured.theta);
+    let offset = [estimated.x - measured.x, estimated.y - measured.y, turn];
+    offset.map(|metres| 1e3 * metres)
 }
 
 /// Scores of an estimate against the measured poses, as `setup` understands them.
@@ -266,15 +282,15 @@ fn scores(push: &PreparedPush, setup: &Setup, estimate: &Estimate) -> Scores {
     score(estimate, &reference, &hidden, setup.virtual_radius())
 }
 
-/// Checks, axis by axis, whether the last measured pose lies in the intervals that the samples,
-/// each with its prediction, give for it.
-fn covered(
+/// Interval of predicted minus measured x, y and θ, times the radius of gyration (m), of the last
+/// measured pose, by the samples, each with its prediction.
+fn intervals(
     push: &PreparedPush,
     posterior: &Posterior<'_>,
     samples: &[Vec<f64>],
     predictions: &[NominalPrediction],
     draw: Draw,
-) -> [bool; 3] {
+) -> [[f64; 2]; 3] {
     let radius = push.push.setup.virtual_radius();
     let mut errors: [Vec<f64>; 3] = Default::default();
     for (sample, (vector, prediction)) in samples.iter().zip(predictions).enumerate() {
@@ -294,13 +310,9 @@ fn covered(
                 let first = 2 + 16 * axis as u32;
                 let drifted = stds[axis] * draw.normal(number, first);
                 let measured = camera * student(draw, number, first + 2);
-                errors[axis].push(last[axis] - drifted - measured);
+                errors[axis].push(drifted + measured - last[axis]);
             }
         }
     }
-    // the pose is covered where an error of zero is
-    errors.map(|errors| {
-        let [low, high] = INTERVAL.map(|q| quantile(&errors, q).expect("there are samples"));
-        low <= 0.0 && 0.0 <= high
-    })
+    errors.map(|errors| INTERVAL.map(|q| quantile(&errors, q).expect("there are samples")))
 }

@@ -86,7 +86,7 @@ pub fn fit<'py>(
     let text = fit.scene_text(&scene.get().text, &scene.get().name, validation.as_ref());
     let warnings = doubts(&pushes, &fit);
     warn(py, &warnings)?;
-    let page = stickslip_cli::fit_page(&fit, validation.as_ref(), &warnings, options.seed);
+    let page = stickslip_cli::fit_page(&pushes, &fit, validation.as_ref(), &warnings, options.seed);
     Ok((
         json(&fit)?,
         json(&validation)?,

@@ -4,14 +4,14 @@ use maud::html;
 
 use crate::axis::{Axis, Scale};
 use crate::colour::{Colour, Line};
-use crate::drawing::{COLUMN, Drawing, path, px};
+use crate::drawing::{COLUMN, Drawing, px};
 use crate::legend::{Legend, Swatch};
 use crate::plot::Plot;
 
 const LEFT: f64 = 98.0;
 const RIGHT: f64 = 18.0;
 
-/// Sets of points on two axes of equal length.
+/// Sets of points on two axes of equal length, each with its own scale.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ScatterPlot {
     /// Description, for those who cannot see it.
@@ -20,8 +20,6 @@ pub struct ScatterPlot {
     pub axis_labels: [String; 2],
     /// A point that is marked by lines across.
     pub mark: Option<[f64; 2]>,
-    /// True if both axes have one scale.
-    pub equal: bool,
     /// The points.
     pub sets: Vec<PointSet>,
 }
@@ -35,10 +33,6 @@ pub struct PointSet {
     pub colour: Colour,
     /// The points.
     pub points: Vec<[f64; 2]>,
-    /// Source of each point, shown where the pointer rests on it; may be empty.
-    pub labels: Vec<String>,
-    /// Where each point comes from, with a line to it; may be empty.
-    pub from: Vec<[f64; 2]>,
 }
 
 impl ScatterPlot {
@@ -66,20 +60,12 @@ impl ScatterPlot {
             y_label: &self.axis_labels[1],
         };
         let dots = |set: &PointSet| {
-            let ways = set.from.iter().zip(&set.points);
-            let ways: String = ways
-                .map(|(from, to)| path([plot.at(*from), plot.at(*to)], false))
-                .collect();
-            let colour = set.colour.hex();
-            let points = set.points.iter().enumerate();
-            let points = points.filter(|(_, point)| point.iter().all(|x| x.is_finite()));
+            let points = set.points.iter();
+            let points = points.filter(|point| point.iter().all(|x| x.is_finite()));
             html! {
-                path d=(ways) stroke=(colour) stroke-opacity="0.45" fill="none" {}
-                @for (k, point) in points {
+                @for point in points {
                     @let [x, y] = plot.at(*point);
-                    circle cx=(px(x)) cy=(px(y)) r="3.5" fill=(colour) fill-opacity="0.45" {
-                        @if let Some(label) = set.labels.get(k) { title { (label) } }
-                    }
+                    circle cx=(px(x)) cy=(px(y)) r="3.5" fill=(set.colour.hex()) fill-opacity="0.45" {}
                 }
             }
         };
@@ -103,20 +89,11 @@ impl ScatterPlot {
 
     /// Limits of both axes.
     fn limits(&self) -> [[f64; 2]; 2] {
-        let limits = [0, 1].map(|axis| {
-            let points = self
-                .sets
-                .iter()
-                .flat_map(|set| set.points.iter().chain(&set.from));
+        [0, 1].map(|axis| {
+            let points = self.sets.iter().flat_map(|set| &set.points);
             let values = points.chain(&self.mark).map(|point| point[axis]);
             Scale::Linear.limits(values)
-        });
-        if !self.equal {
-            return limits;
-        }
-        let half = limits.map(|[low, high]| 0.5 * (high - low));
-        let half = half[0].max(half[1]);
-        limits.map(|[low, high]| [0.5 * (low + high) - half, 0.5 * (low + high) + half])
+        })
     }
 }
 
@@ -125,16 +102,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn points_are_dots_in_a_square_of_one_scale() {
+    fn points_are_dots_and_gaps_are_none() {
         let set = PointSet {
             name: "fitted".to_owned(),
             points: vec![[0.0, 0.0], [f64::NAN, 1.0], [2.0, 1.0]],
-            labels: vec!["a <push>".to_owned()],
-            from: vec![[0.0, 3.0]],
             ..PointSet::default()
         };
         let plot = ScatterPlot {
-            equal: true,
             sets: vec![set],
             ..ScatterPlot::default()
         };
@@ -149,8 +123,7 @@ mod tests {
             <[f64; 2]>::try_from(places("cx=\"")).unwrap(),
             <[f64; 2]>::try_from(places("cy=\"")).unwrap(),
         );
-        // two to the right are twice as far as one up
-        assert!(((y - x) - 2.0 * (z - w)).abs() < 0.1, "{x} {y} {z} {w}");
-        assert!(svg.contains("<title>a &lt;push&gt;</title>"));
+        // both span their axes
+        assert!(((y - x) - (z - w)).abs() < 0.1, "{x} {y} {z} {w}");
     }
 }

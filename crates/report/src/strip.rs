@@ -78,7 +78,11 @@ impl StripPlot {
         let heights = self.groups.iter().map(StripGroup::height);
         let bottom = top + heights.sum::<f64>();
         let lanes = self.groups.iter().flat_map(|group| &group.lanes);
-        let values = lanes.flat_map(|lane| lane.values.iter().copied().chain(lane.mark));
+        let of_lane = |lane: &StripLane| {
+            let ends = lane.interval.into_iter().flatten().chain(lane.mark);
+            lane.values.iter().copied().chain(ends).collect::<Vec<_>>()
+        };
+        let values = lanes.flat_map(of_lane);
         let plot = Plot {
             x: Axis {
                 scale: self.scale,

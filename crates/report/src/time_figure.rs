@@ -228,10 +228,10 @@ impl TimeFigure {
             @for (k, bars) in panel.bars.iter().enumerate() { (bars.draw(k, &plot)) }
             @for mark in self.marks.iter().filter(|mark| (from..=to).contains(&mark.time)) { (plot.event(mark.time, 0.0)) }
         };
-        // the page's script reads values and times, and moves what is clipped
+        // the page's script reads values and times of figures against time, and moves what is clipped
         let numbers = |limits: [f64; 2]| limits.map(|limit| limit.to_string()).join(" ");
         html! {
-            g class="panel" data-time=(numbers(plot.x.limits)) data-values=(numbers(plot.y.limits)) data-log=[(panel.scale != Scale::Linear).then_some("")] data-label=(panel.label) {
+            g class=[self.time_label.starts_with("time").then_some("panel")] data-time=(numbers(plot.x.limits)) data-values=(numbers(plot.y.limits)) data-log=[(panel.scale != Scale::Linear).then_some("")] data-label=(panel.label) {
                 (title.sized(LABEL))
                 (plot.clipped(plot.shades(panel.dark.as_ref().unwrap_or(&self.dark))))
                 (plot.axes())

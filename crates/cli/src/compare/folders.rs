@@ -4,17 +4,37 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use anyhow::Result;
+use clap::Args;
 
 use crate::failure::hinted;
-use crate::given::{is_scene, two_scenes};
+use crate::given::{is_scene, scene_file};
 use crate::log_files::{is_bag, log_path};
+
+/// Scenes of several experiments, on the command line.
+#[derive(Debug, Args)]
+pub struct SceneArgs {
+    /// Scene file in each folder
+    #[arg(long, value_name = "FILE", default_value = "scene.toml")]
+    scene_name: String,
+    /// One scene for all logs, a file or its folder; DIR may then be a log itself
+    #[arg(long, conflicts_with = "scene_name")]
+    scene: Option<PathBuf>,
+}
+
+impl SceneArgs {
+    /// The choice that was made.
+    pub fn scenes(&self) -> Scenes<'_> {
+        let one = self.scene.as_deref();
+        one.map_or(Scenes::Named(&self.scene_name), Scenes::One)
+    }
+}
 
 /// Choice of the scene of an experiment.
 #[derive(Clone, Copy, Debug)]
 pub enum Scenes<'a> {
     /// The file of this name in each folder.
     Named(&'a str),
-    /// This file, of all.
+    /// This file or the one in this folder, of all.
     One(&'a Path),
 }
 
@@ -23,7 +43,7 @@ impl Scenes<'_> {
     pub fn of(self, folder: &Path) -> PathBuf {
         match self {
             Self::Named(name) => folder.join(name),
-            Self::One(scene) => scene.to_owned(),
+            Self::One(scene) => scene_file(scene),
         }
     }
 }
@@ -68,6 +88,12 @@ pub fn expand(given: &[PathBuf], scenes: Scenes<'_>) -> Result<Vec<PathBuf>> {
     }
 }
 
+/// The files of experiments: their logs and scenes.
+pub fn inputs(folders: &[PathBuf], scenes: Scenes<'_>) -> Vec<PathBuf> {
+    let of = |folder: &PathBuf| [log_path(folder), scenes.of(folder)];
+    folders.iter().flat_map(of).collect()
+}
+
 /// The experiment that a file is the scene or the log of.
 fn folder_of(file: &Path, scenes: Scenes<'_>) -> Result<PathBuf> {
     let folder = match file.parent() {
@@ -79,7 +105,14 @@ fn folder_of(file: &Path, scenes: Scenes<'_>) -> Result<PathBuf> {
         _ if is(&log_path(folder)) => Ok(folder.to_owned()),
         Scenes::Named(name) if is(Path::new(name)) => Ok(folder.to_owned()),
         Scenes::Named(name) => Err(stray_file(file, name)),
-        Scenes::One(scene) if is_scene(file) => Err(two_scenes(file, scene, "compare")),
+        Scenes::One(scene) if is_scene(file) => Err(hinted(
+            format!(
+                "{} and {}: these are two scenes",
+                file.display(),
+                scene.display()
+            ),
+            "leave one out",
+        )),
         Scenes::One(_) => Ok(file.to_owned()),
     }
 }
@@ -88,12 +121,8 @@ fn folder_of(file: &Path, scenes: Scenes<'_>) -> Result<PathBuf> {
 fn stray_file(file: &Path, scene_name: &str) -> anyhow::Error {
     let shown = file.display();
     let help = match is_scene(file) {
-        true => format!(
-            "give such a folder, or this scene for all: `stickslip compare DIR --scene {shown}`"
-        ),
-        false => format!(
-            "give such a folder, or its scene, too: `stickslip compare {shown} --scene SCENE`"
-        ),
+        true => format!("give such a folder, or this scene for all: DIR --scene {shown}"),
+        false => format!("give such a folder, or its scene, too: {shown} --scene SCENE"),
     };
     hinted(
         format!(

@@ -6,6 +6,7 @@ use anyhow::{Result, bail};
 use stickslip_fit::{Push, by_object};
 
 /// The pushes of one object.
+#[derive(Debug)]
 pub struct Object {
     /// Its name, where there are several objects.
     pub name: Option<String>,

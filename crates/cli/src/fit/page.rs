@@ -36,10 +36,11 @@ fn sections(result: &FitResult) -> Vec<Section> {
         None => title,
     };
     let mut parameter_blocks = vec![
-        figures::marginals(&result.fit),
+        figures::marginals(result),
         Block::Table(parameters(&result.fit), String::new()),
     ];
-    parameter_blocks.extend(figures::pairs(&result.fit));
+    parameter_blocks.extend(figures::pairs(result));
+    parameter_blocks.push(figures::populations(&result.fit));
     if of_object.is_some() {
         parameter_blocks.extend(remarks(result).into_iter().map(Block::Text));
     }
@@ -47,21 +48,27 @@ fn sections(result: &FitResult) -> Vec<Section> {
         title: titled("Fitted parameters".to_owned()),
         blocks: parameter_blocks,
     }];
-    for (title, validation) in validations(result) {
+    for (_, title, validation) in validations(result) {
         sections.push(Section {
             title: titled(format!("Predictions of {title}")),
             blocks: vec![
                 figures::errors(validation),
-                figures::offsets(validation),
                 Block::Table(
                     errors(validation, title),
                     "Median over the pushes".to_owned(),
                 ),
                 Block::Text(coverage(validation)),
-                Block::Table(each(validation), "Each push".to_owned()),
+                Block::Details(
+                    "Each push".to_owned(),
+                    vec![
+                        figures::finals(validation),
+                        Block::Table(each(validation), String::new()),
+                    ],
+                ),
             ],
         });
     }
+    sections.extend(result.players.iter().cloned());
     sections
 }
 
@@ -76,7 +83,7 @@ fn headlines(result: &FitResult) -> Vec<String> {
         .into_iter()
         .map(|fitted| {
             let [value, std, before] = [fitted.value, fitted.std, fitted.prior_value].map(digits);
-            let (name, unit) = (fitted.name, fitted.unit);
+            let (name, unit) = (fitted.name(), &fitted.unit);
             format!("{name}: {value} ± {std} {unit}")
                 .trim_end()
                 .to_owned()
@@ -84,7 +91,7 @@ fn headlines(result: &FitResult) -> Vec<String> {
         })
         .collect();
     if !left.is_empty() {
-        let names: Vec<&str> = left.iter().map(|fitted| fitted.name).collect();
+        let names: Vec<&str> = left.iter().map(|fitted| fitted.name()).collect();
         lines.push(format!(
             "not identifiable from these pushes: {}",
             names.join(", ")

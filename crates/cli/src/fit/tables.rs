@@ -50,7 +50,7 @@ pub fn text(result: &FitResult) -> String {
         parameters(&result.fit).to_string(),
         remarks(result).join("\n"),
     ];
-    for (title, validation) in validations(result) {
+    for (_, title, validation) in validations(result) {
         lines.push(format!(
             "{}{}",
             errors(validation, title),
@@ -60,14 +60,16 @@ pub fn text(result: &FitResult) -> String {
     lines.join("\n")
 }
 
-/// Pushes predicted by fits that have not seen them, and their names.
-pub fn validations(result: &FitResult) -> impl Iterator<Item = (&'static str, &CrossValidation)> {
+/// Pushes predicted by fits that have not seen them, with number and name of each kind.
+pub fn validations(
+    result: &FitResult,
+) -> impl Iterator<Item = (usize, &'static str, &CrossValidation)> {
     let of = [
         ("pushes left out", &result.cross_validation),
         ("pushes of --test", &result.test),
     ];
-    of.into_iter()
-        .filter_map(|(title, validation)| Some((title, validation.as_ref()?)))
+    let of = of.into_iter().enumerate();
+    of.filter_map(|(k, (title, validation))| Some((k, title, validation.as_ref()?)))
 }
 
 /// Remarks besides the tables.
@@ -117,11 +119,11 @@ pub fn parameters(fit: &Fit) -> Table {
             (false, false) => "not identifiable",
         };
         table.push([
-            fitted.name.to_owned(),
+            fitted.name().to_owned(),
             digits(fitted.prior.value(0.0)),
             digits(fitted.value),
             digits(fitted.std),
-            fitted.unit.to_owned(),
+            fitted.unit.clone(),
             format!("{:.2}", fitted.std_ratio),
             said.to_owned(),
             format!(
@@ -153,7 +155,7 @@ fn strongest_correlation(fit: &Fit) -> Option<[String; 3]> {
     });
     strongest.map(|(i, j)| {
         let value = format!("{:.2}", fit.correlation[i][j]);
-        [name(i).name.to_owned(), name(j).name.to_owned(), value]
+        [name(i).name().to_owned(), name(j).name().to_owned(), value]
     })
 }
 

@@ -1,9 +1,11 @@
 //! `stickslip fit`: its output and its refusals.
 
 use std::fs;
+use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
 use crate::common::{Experiment, empty_folder, json, stickslip, succeeds};
+use stickslip_formats::{Topics, read_log, write_log_mcap};
 
 /// A plate on three feet that a finger pushes on; the pusher's friction is 0.3 to the scene.
 fn scene(place: f64, turn: f64) -> String {
@@ -108,11 +110,123 @@ fn fit_writes_a_scene_that_filters_and_keeps_its_comments() {
             .arg(named(1))
             .arg(named(2))
             .args(["--free", "mu_f", "--folds", "0", "--test"])
-            .arg(named(3)),
+            .arg(named(3))
+            .arg("--report")
+            .arg(out.join("fit.html")),
     );
+    // the page plays the push of --test back, and has its final pose
+    let page = fs::read_to_string(out.join("fit.html")).unwrap();
+    for words in [
+        "push-3: largest error of pushes of --test",
+        "median of the posterior",
+        "mu_f: R-hat",
+        "final pose, predicted - measured (mm)",
+    ] {
+        assert!(page.contains(words), "{words}");
+    }
     let text = String::from_utf8(output.stdout).unwrap();
     assert!(text.contains("pushes of --test, median"), "{text}");
     assert!(text.contains("not identifiable"), "{text}");
+}
+
+/// Bags and tables without scenes of their own are fitted with one scene.
+#[test]
+fn logs_are_fitted_with_one_scene() {
+    let folder = pushes("fit-logs", 3);
+    let named = |k: usize| folder.join(format!("pushes/push-{k}"));
+    let options = ["--free", "mu_p", "--folds", "0", "--json"];
+    let of_folders = json(fit(&folder.join("pushes"), &folder.join("out")).args(options));
+    let logs = [0, 1, 2].map(|k| {
+        let log = fs::read(named(k).join("log.csv")).unwrap();
+        let to = folder.join(if k < 2 {
+            format!("push-{k}.mcap")
+        } else {
+            format!("push-{k}.csv")
+        });
+        let bytes = match k {
+            2 => log,
+            _ => {
+                let (log, _) = read_log(log.as_slice(), "log.csv").unwrap();
+                let topics = Topics::new(["object=/box".parse().unwrap()]).unwrap();
+                let mut bytes = Cursor::new(Vec::new());
+                write_log_mcap(&mut bytes, &log, &topics).unwrap();
+                bytes.into_inner()
+            }
+        };
+        fs::write(&to, bytes).unwrap();
+        to
+    });
+    let scene = named(0).join("scene.toml");
+    let of_logs = |logs: &[PathBuf], more: &[&str]| {
+        let mut command = stickslip();
+        command.arg("fit").args(logs).arg("--scene").arg(&scene);
+        command.arg("--out").arg(folder.join("of-logs"));
+        command.args(options).args(more);
+        command
+    };
+    let close = |result: serde_json::Value, expected: &serde_json::Value| {
+        let [a, b] = [&result, expected].map(|fit| fit["parameters"][0]["value"].as_f64().unwrap());
+        // a bag has quaternions
+        assert!((a - b).abs() < 1e-3, "{a} {b}");
+    };
+    let bags = json(&mut of_logs(&logs[..2], &["--topic", "object=/box"]));
+    let of_two = fit(&named(0), &folder.join("two"))
+        .arg(named(1))
+        .args(options)
+        .output();
+    close(
+        bags,
+        &serde_json::from_slice(&of_two.unwrap().stdout).unwrap(),
+    );
+    let tables = [0, 1, 2].map(|k| named(k).join("log.csv"));
+    close(json(&mut of_logs(&tables, &[])), &of_folders);
+
+    // a topic that is not there, and an input as the report's place
+    let run = of_logs(&logs[..2], &[]).output().unwrap();
+    let told = String::from_utf8(run.stderr).unwrap();
+    assert!(
+        told.contains("push-0.mcap") && told.contains("--topic object="),
+        "{told}"
+    );
+    let report = logs[1].to_str().unwrap();
+    let run = of_logs(&logs[..2], &["--report", report]).output().unwrap();
+    let told = String::from_utf8(run.stderr).unwrap();
+    assert!(told.contains("would destroy what is read"), "{told}");
+}
+
+/// A call that was interrupted after the first object goes on with the second one, and ends as if
+/// it had made both. Other options or pushes are fitted again.
+fn goes_on(pushes: &Path, out: &Path, options: &[&str], page: &str) {
+    let files = ["heavy", "plate"].map(|name| out.join(name).join("fit.json"));
+    let before = files
+        .each_ref()
+        .map(|file| fs::read_to_string(file).unwrap());
+    let kept = |more: &[&str]| {
+        let report = out.join("fit.html");
+        let run = fit(pushes, out)
+            .args(options)
+            .arg("--report")
+            .arg(report)
+            .args(more)
+            .output();
+        let told = String::from_utf8(run.unwrap().stderr).unwrap();
+        ["heavy", "plate"].map(|name| told.contains(&format!("{name}: this fit is of the same")))
+    };
+    fs::remove_file(&files[1]).unwrap();
+    assert_eq!(kept(&[]), [true, false]);
+    assert_eq!(
+        files
+            .each_ref()
+            .map(|file| fs::read_to_string(file).unwrap()),
+        before
+    );
+    assert_eq!(fs::read_to_string(out.join("fit.html")).unwrap(), page);
+    assert_eq!(kept(&["--seed", "1"]), [false, false]);
+    let log = pushes.join("heavy_1/log.csv");
+    let rows = fs::read_to_string(&log).unwrap();
+    let fewer = rows.trim_end().rsplit_once('\n').unwrap().0;
+    fs::write(&log, fewer).unwrap();
+    assert_eq!(kept(&["--seed", "1"]), [false, true]);
 }
 
 #[test]
@@ -177,6 +291,7 @@ fn objects_are_fitted_on_their_own() {
         assert_eq!(scene(&out.join(name)), scene(&alone));
     }
     assert!(!out.join("fit.json").exists());
+    goes_on(&pushes, &out, &options, &page);
 
     // one push of an object is too few, found before any fit
     fs::remove_dir_all(pushes.join("plate_08")).unwrap();

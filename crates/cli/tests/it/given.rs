@@ -122,17 +122,17 @@ fn what_cannot_be_meant_is_answered_with_what_to_type() {
         (
             "compare alone/other.csv",
             "alone/other.csv: a file; experiments are given as folders",
-            "`stickslip compare alone/other.csv --scene SCENE`",
+            "its scene, too: alone/other.csv --scene SCENE",
         ),
         (
             "compare only.toml a",
             "only.toml: a file; experiments are given as folders",
-            "`stickslip compare DIR --scene only.toml`",
+            "this scene for all: DIR --scene only.toml",
         ),
         (
             "compare a/scene.toml --scene only.toml",
             "a/scene.toml and only.toml: these are two scenes",
-            "`stickslip compare LOG --scene only.toml`",
+            "leave one out",
         ),
         (
             "fit only.toml --out out",

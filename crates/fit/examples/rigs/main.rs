@@ -76,7 +76,7 @@ fn compared(fit: &Fit, truths: &[f64]) -> Vec<Outcome> {
         let [low, high] = fitted.interval_90;
         let coordinate = |value| fitted.prior.coordinate(value);
         Outcome {
-            name: fitted.name,
+            name: fitted.name(),
             error: coordinate(fitted.value) - coordinate(*truth),
             spread: fitted.std_ratio,
             held: (low..=high).contains(truth),

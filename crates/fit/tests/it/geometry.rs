@@ -28,7 +28,9 @@ fn assert_found(fit: &Fit, truths: &[f64]) {
     for (fitted, truth) in fit.parameters.iter().zip(truths) {
         println!(
             "{} {} +- {}, truly {truth}",
-            fitted.name, fitted.value, fitted.std
+            fitted.name(),
+            fitted.value,
+            fitted.std
         );
         let off = (fitted.value - truth).abs() / fitted.std;
         assert!(fitted.determined && off < 3.5, "{fitted:?}, truly {truth}");

@@ -28,7 +28,7 @@ fn options(names: &[&str]) -> FitOptions {
 
 /// Distance of a fitted value from the truth, in its standard deviations.
 fn deviation(fit: &Fit, name: &str, truth: f64) -> f64 {
-    let fitted = fit.parameters.iter().find(|p| p.name == name).unwrap();
+    let fitted = fit.parameters.iter().find(|p| p.name() == name).unwrap();
     (fitted.value - truth) / fitted.std
 }
 
@@ -57,7 +57,7 @@ fn friction_of_another_physics_is_found_nearly() {
         ("mu_p", TRUTH.mu_p),
         ("tripod_radius", rig_tripod_radius(TRUTH, 3)),
     ] {
-        let fitted = fit.parameters.iter().find(|p| p.name == name).unwrap();
+        let fitted = fit.parameters.iter().find(|p| p.name() == name).unwrap();
         println!("{name} {} +- {}, truly {truth}", fitted.value, fitted.std);
         assert!(
             (fitted.value / truth - 1.0).abs() < 0.15,
