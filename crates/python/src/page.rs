@@ -5,7 +5,7 @@ use pyo3::types::PyDict;
 use stickslip::Run;
 use stickslip::diagnosis::{Finding, doubts};
 use stickslip_cli::{CloudSample, ComparedRun, DRAWN, ShownScores, compared_method};
-use stickslip_evaluation::{ScoredRun, Variant};
+use stickslip_evaluation::{PIT_BINS, ScoredRun, Variant};
 use stickslip_formats::{Experiment, TruthFacts, estimate_of_columns, read_truth_json};
 
 use crate::columns::Columns;
@@ -116,6 +116,7 @@ pub struct Compared {
     final_error_deg: f64,
     covered_90: f64,
     crps_mm: f64,
+    pit: [f64; PIT_BINS],
     unsolved: u64,
     collapses: u32,
     warnings: Vec<String>,
@@ -143,6 +144,7 @@ fn compared(row: Compared) -> PyResult<ComparedRun> {
             final_error_deg: known(row.final_error_deg),
             covered_90: known(row.covered_90),
             crps_mm: known(row.crps_mm),
+            pit: known(row.crps_mm).map(|_| row.pit),
             unsolved: row.unsolved,
             collapses: row.collapses,
             ..ShownScores::default()
