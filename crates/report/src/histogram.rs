@@ -4,12 +4,13 @@ use maud::html;
 
 use crate::axis::{Axis, Scale};
 use crate::colour::{Colour, Line};
-use crate::drawing::{Anchor, Drawing, LABEL, Text, px};
+use crate::drawing::{Anchor, COLUMN, Drawing, LABEL, Text, px};
 use crate::font::Weight;
 use crate::plot::Plot;
 
 /// Size of one, three of which fill a page, and its surroundings (px).
 const SIZE: [f64; 2] = [294.0, 210.0];
+const NARROW: [f64; 2] = [COLUMN, 200.0];
 const LEFT: f64 = 62.0;
 const RIGHT: f64 = 14.0;
 const TOP: f64 = 28.0;
@@ -40,17 +41,22 @@ pub struct Histogram {
 }
 
 impl Histograms {
-    /// The figure, three side by side.
+    /// The figure, three side by side; on a phone one below the other.
     #[must_use]
     pub fn drawing(&self) -> Drawing {
         let bars = self.all.iter().flat_map(|histogram| &histogram.bars);
         let most = bars.fold(2.0 * self.level, |most, bar| most.max(*bar));
-        let drawings = self.all.iter().map(|histogram| self.one(histogram, most));
-        Drawing::grid(&drawings.collect::<Vec<_>>(), 3)
+        let grid = |size: [f64; 2], columns: usize| {
+            let all = self.all.iter().map(|one| self.one(one, most, size));
+            Drawing::grid(&all.collect::<Vec<_>>(), columns)
+        };
+        Drawing {
+            narrow: Some(Box::new(grid(NARROW, 1))),
+            ..grid(SIZE, 3)
+        }
     }
 
-    fn one(&self, histogram: &Histogram, most: f64) -> Drawing {
-        let [width, height] = SIZE;
+    fn one(&self, histogram: &Histogram, most: f64, [width, height]: [f64; 2]) -> Drawing {
         let plot = Plot {
             x: Axis {
                 scale: Scale::Linear,
