@@ -19,10 +19,10 @@ pub struct Belief {
     /// deviations, the mean over x, y and r_v θ (mm); the lower the better, an absolute error where
     /// the spread is 0 (Gneiting & Raftery 2007, paragraph 4.2).
     pub crps_mm: Option<f64>,
-    /// Histogram of the probability integral transform: share of the x, y and θ of the reference
-    /// that lie in each tenth of these normal distributions, from the lowest to the highest. 0.1
-    /// each where the belief is calibrated; more in the outer tenths where it is too narrow, more
-    /// in the middle where it is too wide (Gneiting, Balabdaoui & Raftery 2007, section 3.1).
+    /// Histogram of the probability integral transform (Gneiting, Balabdaoui & Raftery 2007,
+    /// section 3.1). Share of the reference's x, y and θ in each tenth of these normal
+    /// distributions, from the lowest to the highest. A calibrated belief has 0.1 in each, one that
+    /// is too narrow more in the outer tenths.
     pub pit: Option<[f64; PIT_BINS]>,
 }
 

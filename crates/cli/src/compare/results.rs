@@ -237,14 +237,17 @@ impl ShownScores {
     pub fn mean(of: &[Self]) -> Self {
         let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
         let pit: Vec<_> = of.iter().filter_map(|scores| scores.pit).collect();
-        let tenth = |k: usize| mean(&pit.iter().map(|shares| shares[k]).collect::<Vec<_>>());
+        let tenth = |k: usize| {
+            let shares = pit.iter().map(|shares| shares[k]);
+            mean(&shares.collect::<Vec<_>>())
+        };
         Self {
             pit: (!pit.is_empty()).then(|| std::array::from_fn(tenth)),
             ..Self::each(of, |values| (!values.is_empty()).then(|| mean(values)))
         }
     }
 
-    /// Applies `summarise` to each score but the histogram, and sums all unsolved steps and collapses.
+    /// Applies `summarise` to each score but the histogram, and sums unsolved steps and collapses.
     fn each(of: &[Self], summarise: impl Fn(&[f64]) -> Option<f64>) -> Self {
         let each = |score: fn(&Self) -> Option<f64>| {
             summarise(&of.iter().filter_map(score).collect::<Vec<_>>())
