@@ -16,8 +16,8 @@ from stickslip._columns import Columns
 from stickslip._files import Topics, experiments, load_log, load_scene, load_truth, path_of
 from stickslip._filter import filter
 from stickslip._native import Error, Scene
-from stickslip._options import DEFAULTS, FilterOptions, with_options
-from stickslip._page import Page
+from stickslip._options import FilterOptions, arguments, with_options
+from stickslip._page import Page, run_of
 from stickslip._score import score
 
 if TYPE_CHECKING:
@@ -37,13 +37,23 @@ _VARIANTS: dict[str, dict[str, Any]] = {
 class Comparison(list[dict[str, Any]]):
     """Runs of :func:`compare`, a dict each. A notebook shows the :meth:`page`."""
 
-    def __init__(self, rows: Iterable[dict[str, Any]], particles: int) -> None:
+    def __init__(
+        self,
+        rows: Iterable[dict[str, Any]],
+        experiments: Iterable[_Experiment] = (),
+        options: FilterOptions | None = None,
+    ) -> None:
         super().__init__(rows)
-        self._particles = particles
+        self._experiments = list(experiments)
+        self._options = options or FilterOptions()
 
     def page(self) -> Page:
-        """Returns the page of ``stickslip compare --report``, without players."""
-        return Page(_native.comparison_page(self, self._particles))
+        """Returns the page of ``stickslip compare --report``.
+
+        Its players are of the logs with the largest errors, which are run again with seed 0.
+        """
+        on = [experiment.given(self._options) for experiment in self._experiments]
+        return Page(_native.comparison_page(self, on, arguments(self._options)))
 
     def _repr_html_(self) -> str:
         return self.page()._repr_html_()
@@ -101,7 +111,7 @@ def compare(
             raise Error(f"{experiment.folder}: {error}") from error
         if progress is not None:
             progress(done + 1, len(runs))
-    return Comparison(rows, options.get("particles", DEFAULTS["particles"]))
+    return Comparison(rows, read, options)
 
 
 @dataclass(frozen=True)
@@ -141,6 +151,11 @@ class _Experiment:
         return (variant != "particle_no_tactile" or "tactile_1" in self.log) and (
             variant != "particle_always_on" or hides
         )
+
+    def given(self, options: FilterOptions) -> dict[str, Any]:
+        """Returns the experiment as the library takes it."""
+        known = {"name": str(self.folder), "truth": self.truth, "facts": json.dumps(self.facts) if self.facts else None}
+        return run_of(self.log, self.scene, FilterOptions(**{**options, **self.hiding}), **known)
 
     def run(self, variant: str, seed: int, options: FilterOptions) -> dict[str, Any]:
         """Runs a variant and scores it."""

@@ -23,7 +23,7 @@ def score(
     occlude_middle: float | None = None,
     first_pusher_contact: int | None = None,
     virtual_radius: float | None = None,
-) -> dict[str, float]:
+) -> dict[str, Any]:
     """Scores an estimate against ``truth`` or, without it, against the log's own poses.
 
     ``truth``: columns ``time``, ``x``, ``y``, ``theta``, or the path of ``truth.csv``. The log's
@@ -41,6 +41,8 @@ def score(
     - ``final_error_mm`` and ``final_error_deg``: errors at the end
     - ``covered_90``: share of the 90 % intervals of x, y and theta that cover the reference, and
       ``crps_mm``: the score of the whole belief (CRPS), over hidden rows if there are some
+    - ``pit``: over the same rows, the share of the reference's x, y and theta in each tenth of the
+      belief (probability integral transform), a list of ten; 0.1 each if the belief is calibrated
     """
     if isinstance(truth, str | os.PathLike):
         truth = load_truth(truth)

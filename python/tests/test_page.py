@@ -61,6 +61,11 @@ def test_the_page_of_a_comparison_has_its_rows(demo, tmp_path):
     assert page.count("<title>b: ") == 2 * 5
     (covered,) = {row["covered_90"] for row in rows if row["variant"] == "kalman"}
     assert 0 <= covered <= 1 and all(row["crps_mm"] > 0 for row in rows)
+    # a histogram per method, whose bars are the means over its runs; wide and narrow
+    pit = [np.mean([row["pit"] for row in rows if row["variant"] == name], axis=0) for name in ("kalman", "particle")]
+    assert np.allclose(np.sum(pit, axis=1), 1)
+    bars = re.findall(r"<title>0\.\d to [01]\.\d: ([\d.]+)</title>", page)
+    assert sorted(bars) == sorted(2 * [f"{100 * share:.1f}" for share in np.ravel(pit)])
 
 
 @pytest.mark.parametrize(

@@ -35,8 +35,9 @@ pub struct Report {
 pub fn check(args: &CheckArgs) -> Result<Verdict> {
     let given = args.given.resolve("check")?;
     let topics = args.topics.options(Program::command())?;
-    let log = LogFiles::find(&given.log)?;
-    let (setup, log, verdict) = read_scene_and_log(&given.scene, &log, &topics)?;
+    let files = LogFiles::find(&given.log)?;
+    let (setup, log, warnings) = read_scene_and_log(&given.scene, &files, &topics)?;
+    let verdict = files.told(&warnings);
     let findings = diagnose(&setup, &log);
     let report = Report::new(&findings);
     show_result(args.json, &report, || report.to_string())?;
@@ -62,6 +63,19 @@ impl Report {
             warnings,
             findings: findings.iter().map(JsonFinding::new).collect(),
         }
+    }
+
+    /// With warnings about reading the log in front.
+    pub fn after_reading(mut self, warnings: &[String]) -> Self {
+        self.warnings += warnings.len();
+        let findings = warnings.iter().map(|warning| JsonFinding {
+            subject: "reading".to_owned(),
+            severity: Severity::Warning.to_string(),
+            found: warning.clone(),
+            advice: None,
+        });
+        self.findings.splice(0..0, findings);
+        self
     }
 }
 

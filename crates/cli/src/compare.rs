@@ -16,7 +16,7 @@ use std::path::PathBuf;
 use anyhow::{Result, anyhow};
 use clap::CommandFactory;
 use rayon::prelude::*;
-use stickslip::{Occlusion, Tracking};
+use stickslip::{FilterModel, Occlusion, Tracking};
 use stickslip_evaluation::{RunConditions, ScoredRun, Variant};
 use stickslip_formats::{BagOptions, Experiment};
 use stickslip_report::Report;
@@ -35,13 +35,15 @@ use results::{Comparison, FolderResult, LostFolder};
 const MANY: usize = 8;
 
 /// An experiment folder with its hidden rows.
-struct Folder {
-    path: PathBuf,
-    experiment: Experiment,
-    occlusion: Occlusion,
-    tracking: Tracking,
-    /// Says whether all of the log could be read.
-    verdict: Verdict,
+pub struct Folder {
+    /// Its path.
+    pub path: PathBuf,
+    /// Its content.
+    pub experiment: Experiment,
+    /// Hidden rows.
+    pub occlusion: Occlusion,
+    /// Tracking of the pusher.
+    pub tracking: Tracking,
 }
 
 /// One run that is to be made.
@@ -94,9 +96,15 @@ pub fn compare(args: &CompareArgs) -> Result<Verdict> {
     )
 }
 
-/// The page about runs that a caller made, without players.
-pub fn page_of(runs: &[ComparedRun], particles: usize) -> Report {
-    page::report(&Comparison::of_runs(runs, particles), Vec::new())
+/// The page about runs that a caller made on these folders.
+pub fn page_of(
+    runs: &[ComparedRun],
+    (particles, model): (usize, FilterModel),
+    folders: &[Folder],
+) -> Result<Report> {
+    let comparison = Comparison::of_runs(runs, particles);
+    let played = played::played(&comparison, model, folders)?;
+    Ok(page::report(&comparison, played))
 }
 
 /// The comparison, the folders that could be read, and whether all of the logs in them could be.
@@ -106,15 +114,15 @@ fn compare_all(
     paths: Vec<PathBuf>,
 ) -> (Comparison, Vec<Folder>, Verdict) {
     // read all folders; those that cannot be read are reported and left out
-    let read: Vec<Result<Folder, LostFolder>> = paths
+    let read: Vec<Result<(Folder, Verdict), LostFolder>> = paths
         .into_par_iter()
         .map(|path| read(args, given, path))
         .collect();
     let mut errors = Vec::new();
-    let folders: Vec<Folder> = read
+    let (folders, verdicts): (Vec<Folder>, Vec<Verdict>) = read
         .into_iter()
         .filter_map(|folder| folder.map_err(|lost| errors.push(lost)).ok())
-        .collect();
+        .unzip();
 
     // run every variant with every seed on each
     let jobs = jobs(&folders, args.seeds);
@@ -143,18 +151,19 @@ fn compare_all(
             Err(error) => errors.push(LostFolder::new(&folder.path, error)),
         }
     }
-    let mut verdicts = folders.iter().map(|folder| folder.verdict);
+    let mut verdicts = verdicts.into_iter();
     let cut_off = verdicts.find(|verdict| *verdict != Verdict::Done);
     let comparison = Comparison::new((args.shared.particles, args.seeds), results, errors);
     (comparison, folders, cut_off.unwrap_or(Verdict::Done))
 }
 
-/// Reads a folder; the options say which rows are hidden, else truth.json does.
+/// Reads a folder; the options say which rows are hidden, else truth.json does. The verdict says
+/// whether all of the log could be read.
 fn read(
     args: &CompareArgs,
     (scenes, topics): (Scenes<'_>, &BagOptions),
     path: PathBuf,
-) -> Result<Folder, LostFolder> {
+) -> Result<(Folder, Verdict), LostFolder> {
     let (experiment, verdict) = read_folder(&path, &scenes.of(&path), topics)
         .map_err(|error| LostFolder::new(&path, &error))?;
     let occlusion = match args.shared.occlusion() {
@@ -164,13 +173,14 @@ fn read(
     check_occlusion(occlusion, &experiment.log)
         .and_then(|()| check_sense(&args.shared.force, &experiment))
         .map_err(|error| LostFolder::new(&path, &error))?;
-    Ok(Folder {
+    let tracking = args.shared.tracking();
+    let folder = Folder {
         path,
         experiment,
         occlusion,
-        tracking: args.shared.tracking(),
-        verdict,
-    })
+        tracking,
+    };
+    Ok((folder, verdict))
 }
 
 fn jobs(folders: &[Folder], seeds: u64) -> Vec<Job> {

@@ -9,8 +9,8 @@ use anyhow::{Context, Result};
 use stickslip::diagnosis::refused;
 use stickslip::{Log, Occlusion, Setup};
 use stickslip_formats::{
-    BagOptions, Experiment, Truth, TruthFacts, read_log, read_mounts, read_scene, read_truth_csv,
-    read_truth_json, scene_assumptions,
+    BagOptions, Experiment, LogWarning, Truth, TruthFacts, read_log, read_mounts, read_scene,
+    read_truth_csv, read_truth_json, scene_assumptions,
 };
 
 use crate::arg_values::ForceArgs;
@@ -47,14 +47,27 @@ impl Texts<'_> {
 }
 
 /// Reads a scene, a log and the truth. The truth is `truth`, else truth.csv next to the log, and
-/// truth.json next to it. The verdict says whether all of the log could be read.
+/// truth.json next to it. Warnings go to standard error; the verdict says whether all of the log
+/// could be read.
 pub fn read_experiment(
     scene: &Path,
     log: &Path,
     topics: &BagOptions,
     truth: Option<&Path>,
 ) -> Result<(Experiment, Verdict)> {
-    let (setup, log_data, verdict) = read_scene_and_log(scene, &LogFiles::find(log)?, topics)?;
+    let files = LogFiles::find(log)?;
+    let (experiment, warnings) = read_quietly(scene, (log, &files), topics, truth)?;
+    Ok((experiment, files.told(&warnings)))
+}
+
+/// Reads the scene, the log of these files and the truth, with warnings about the log.
+pub fn read_quietly(
+    scene: &Path,
+    (log, files): (&Path, &LogFiles),
+    topics: &BagOptions,
+    truth: Option<&Path>,
+) -> Result<(Experiment, Vec<LogWarning>)> {
+    let (setup, log_data, warnings) = read_scene_and_log(scene, files, topics)?;
     let own = Some(log).filter(|log| log.is_dir());
     let folders: Vec<&Path> = own.into_iter().chain(log.parent()).collect();
     let beside = |name: &str| {
@@ -75,7 +88,7 @@ pub fn read_experiment(
         .unwrap_or_default();
     let experiment = Experiment::new(setup, log_data, truth, facts)
         .with_context(|| format!("{} and {}", log.display(), scene.display()))?;
-    Ok((experiment, verdict))
+    Ok((experiment, warnings))
 }
 
 /// Reads an experiment folder, or a log, with a scene.
@@ -200,7 +213,7 @@ pub fn read_scene_and_log(
     scene: &Path,
     log: &LogFiles,
     topics: &BagOptions,
-) -> Result<(Setup, Log, Verdict)> {
+) -> Result<(Setup, Log, Vec<LogWarning>)> {
     // once, since it may be a pipe
     let (text, name) = (text_of(scene, "scene")?, scene.display().to_string());
     let setup = parse_scene(&text, &name)?;
@@ -209,8 +222,8 @@ pub fn read_scene_and_log(
         touch_force: setup.tactile.touch_force,
         ..topics.clone()
     };
-    let (log, verdict) = log.read(&options)?;
-    Ok((setup, log, verdict))
+    let (log, warnings) = log.read(&options)?;
+    Ok((setup, log, warnings))
 }
 
 /// The scene of a log that is given without one: `scene.toml` in the given folder, else next to the

@@ -6,14 +6,14 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::Result;
-use stickslip::{Log, Occlusion, Setup};
+use stickslip::{FilterModel, Log, Occlusion, Setup};
 use stickslip_evaluation::{ScoredRun, Variant};
 use stickslip_fit::{CrossValidation, Fit, Push};
 use stickslip_formats::{BagOptions, Experiment, LogWarning};
 use stickslip_report::{Report, ReportedExperiment, ReportedRun};
 
 use crate::compare;
-pub use crate::compare::{ComparedRun, ShownScores};
+pub use crate::compare::{ComparedRun, Folder as ComparedFolder, ShownScores};
 use crate::experiment;
 use crate::failure::{Hinted, one_line};
 use crate::filter;
@@ -99,9 +99,18 @@ pub fn run_player(experiment: &Experiment, scored: ScoredRun, occlusion: Occlusi
     Report::player(reported.playback()).to_html()
 }
 
-/// The page of `stickslip compare --report` about runs, without players.
-pub fn comparison_page(runs: &[ComparedRun], particles: usize) -> String {
-    compare::page_of(runs, particles).to_html()
+/// The page of `stickslip compare --report` about runs on these folders, whose players it makes.
+///
+/// # Errors
+/// A run fails; in words.
+pub fn comparison_page(
+    runs: &[ComparedRun],
+    conditions: (usize, FilterModel),
+    folders: &[ComparedFolder],
+) -> Result<String, String> {
+    let page = compare::page_of(runs, conditions, folders);
+    page.map(|page| page.to_html())
+        .map_err(|error| words(&error))
 }
 
 /// The page of `stickslip fit --report` about a fit to `pushes`.

@@ -48,8 +48,8 @@ use clap::Parser;
 
 use crate::args::{Command, Program};
 pub use crate::in_process::{
-    ComparedRun, ShownScores, bag_info, check_occlusion, check_sense, compared_method,
-    comparison_page, fit_page, log_files, read_log_at, run_page, run_player,
+    ComparedFolder, ComparedRun, ShownScores, bag_info, check_occlusion, check_sense,
+    compared_method, comparison_page, fit_page, log_files, read_log_at, run_page, run_player,
 };
 pub use crate::reported_run::DRAWN;
 pub use stickslip_report::CloudSample;

@@ -183,12 +183,11 @@ impl LogFiles {
         }
     }
 
-    /// Reads them; warnings go to standard error. The verdict says whether all could be read.
-    pub fn read(&self, options: &BagOptions) -> Result<(Log, Verdict)> {
+    /// Reads them; an error about a topic names the option that chooses another.
+    pub fn read(&self, options: &BagOptions) -> Result<(Log, Vec<LogWarning>)> {
         let option = |key: &str, topic: &str| format!("--topic {key}={topic}");
         let read = self.read_quietly(options);
-        let (log, warnings) = read.map_err(|error| topic_hint(error, option))?;
-        Ok((log, self.told(&warnings)))
+        read.map_err(|error| topic_hint(error, option))
     }
 
     /// Reads them.

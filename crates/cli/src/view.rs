@@ -112,10 +112,7 @@ impl View {
         match what {
             "check" => {
                 let opened = self.read(&question.log)?;
-                let Experiment { setup, log, .. } = &opened.experiment;
-                Ok(serde_json::to_string(&check::Report::new(&diagnose(
-                    setup, log,
-                )))?)
+                Ok(serde_json::to_string(&checked(&opened))?)
             }
             "open" => self.open(&question.log),
             "run" => self.run(&question, notices),
@@ -167,11 +164,10 @@ impl View {
         *lock(&self.opened) = Some(opened.clone());
         *lock(&self.shown) = None;
         let settings = Settings::new(&opened);
-        let Experiment { setup, log, .. } = &opened.experiment;
         let measured = opened.measured();
         let reported = ReportedExperiment::new(name, "", &measured, Occlusion::None, Vec::new());
         let report = json!({
-            "findings": check::Report::new(&diagnose(setup, log)).findings,
+            "findings": checked(&opened).findings,
             "sliders": settings.sliders,
             "html": Report::player(reported.scene_playback()).to_part(),
         });
@@ -184,6 +180,7 @@ impl View {
         let opened = self.opened(&question.log)?;
         let settings = Settings::changed(&opened, &question.changed)?;
         let experiment = settings.experiment()?;
+        settings.check_order()?;
         let options = settings.options();
         check_occlusion(options.occlusion, &experiment.log)?;
         refuse_nonsense(
@@ -264,6 +261,12 @@ impl View {
         }
         section.blocks.splice(1..1, notes);
     }
+}
+
+/// Findings of `stickslip check`, after what was lost in reading.
+fn checked(opened: &Opened) -> check::Report {
+    let Experiment { setup, log, .. } = &opened.experiment;
+    check::Report::new(&diagnose(setup, log)).after_reading(&opened.warnings)
 }
 
 fn parsed<T: DeserializeOwned>(text: &[u8]) -> Result<T> {

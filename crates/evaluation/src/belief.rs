@@ -5,6 +5,9 @@ use stickslip::dynamics::Pose;
 /// Standard deviations on either side of the centre that contain 90 % of a normal distribution.
 pub(crate) const NINETY_PERCENT: f64 = 1.644_853_626_951_472_7;
 
+/// Number of equal parts of 0..1 in which [`Belief::pit`] counts.
+pub const PIT_BINS: usize = 10;
+
 /// Agreement of an estimate's poses and standard deviations with a reference over some rows; `None`
 /// over no rows, and for methods without a spread.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -16,6 +19,11 @@ pub struct Belief {
     /// deviations, the mean over x, y and r_v θ (mm); the lower the better, an absolute error where
     /// the spread is 0 (Gneiting & Raftery 2007, paragraph 4.2).
     pub crps_mm: Option<f64>,
+    /// Histogram of the probability integral transform (Gneiting, Balabdaoui & Raftery 2007,
+    /// section 3.1). Share of the reference's x, y and θ in each tenth of these normal
+    /// distributions, from the lowest to the highest. A calibrated belief has 0.1 in each, one that
+    /// is too narrow more in the outer tenths.
+    pub pit: Option<[f64; PIT_BINS]>,
 }
 
 /// Estimate minus reference at one row, with the estimate's own standard deviations.
@@ -31,6 +39,7 @@ impl Belief {
     /// Over some rows; `virtual_radius` is r_v (m).
     pub(crate) fn of(rows: impl Iterator<Item = Judged>, virtual_radius: f64) -> Self {
         let (mut held, mut crps, mut count) = (0.0, 0.0, 0.0);
+        let mut pit = [0.0; PIT_BINS];
         for Judged { error, std } in rows {
             let pairs = [
                 (error.x, std.x, 1.0),
@@ -40,14 +49,23 @@ impl Belief {
             for (error, std, length) in pairs {
                 held += f64::from(u8::from(error.abs() <= NINETY_PERCENT * std));
                 crps += 1e3 * length * normal_crps(error, std);
+                pit[tenth(error, std)] += 1.0;
                 count += 1.0;
             }
         }
         Self {
             covered: (count > 0.0).then(|| held / count),
             crps_mm: (count > 0.0).then(|| crps / count),
+            pit: (count > 0.0).then(|| pit.map(|held| held / count)),
         }
     }
+}
+
+/// Part of a normal distribution in which the reference lies, if its mean is off by `error`.
+fn tenth(error: f64, std: f64) -> usize {
+    let z = if error == 0.0 { 0.0 } else { -error / std };
+    let below = 0.5 * libm::erfc(-z / std::f64::consts::SQRT_2);
+    ((PIT_BINS as f64 * below) as usize).min(PIT_BINS - 1)
 }
 
 /// CRPS of a normal distribution whose mean is off by `error`, in its unit.
@@ -93,6 +111,33 @@ mod tests {
                 "{error} {std}: {found}, {expected}"
             );
         }
+    }
+
+    /// Beliefs that are right, half as wide, twice as wide, and all too high.
+    #[test]
+    fn the_transform_is_even_where_the_belief_is_right() {
+        let pit = |std: f64, shift: f64| {
+            let draw = |i: u64| Streams::new(11).normals::<2>(i, 0, 0)[0];
+            let rows = (0..4000).map(|i| judged(draw(i) + shift, std));
+            Belief::of(rows, 1.0).pit.expect("rows")
+        };
+        let even = pit(1.0, 0.0);
+        assert!((even.iter().sum::<f64>() - 1.0).abs() < 1e-12);
+        assert!(
+            even.iter().all(|share| (share - 0.1).abs() < 0.02),
+            "{even:?}"
+        );
+        let (narrow, wide, high) = (pit(0.5, 0.0), pit(2.0, 0.0), pit(1.0, 1.0));
+        assert!(narrow[0] > 0.2 && narrow[9] > 0.2, "{narrow:?}");
+        assert!(wide[0] < 0.02 && wide[9] < 0.02, "{wide:?}");
+        assert!(high[0] > 0.3 && high[9] < 0.02, "{high:?}");
+    }
+
+    #[test]
+    fn a_belief_without_a_spread_has_its_reference_on_a_side_or_in_the_middle() {
+        let of = |error| Belief::of([judged(error, 0.0)].into_iter(), 1.0).pit;
+        let whole = |k: usize| Some(std::array::from_fn(|tenth| f64::from(u8::from(tenth == k))));
+        assert_eq!([of(1.0), of(0.0), of(-1.0)], [whole(0), whole(5), whole(9)]);
     }
 
     #[test]

@@ -12,7 +12,7 @@ mod simulation;
 mod statistics;
 mod variant;
 
-pub use belief::Belief;
+pub use belief::{Belief, PIT_BINS};
 pub use learned_friction::{LearnedParameter, LearningFriction};
 pub use run::{RunConditions, ScoredRun};
 pub use score::{Reference, Scores, score};

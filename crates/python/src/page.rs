@@ -1,11 +1,15 @@
 //! Pages about runs, as HTML text: [`report`], [`player`], [`comparison_page`].
 
+use std::path::PathBuf;
+
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use stickslip::Run;
 use stickslip::diagnosis::{Finding, doubts};
-use stickslip_cli::{CloudSample, ComparedRun, DRAWN, ShownScores, compared_method};
-use stickslip_evaluation::{ScoredRun, Variant};
+use stickslip_cli::{
+    CloudSample, ComparedFolder, ComparedRun, DRAWN, ShownScores, compared_method,
+};
+use stickslip_evaluation::{PIT_BINS, ScoredRun, Variant};
 use stickslip_formats::{Experiment, TruthFacts, estimate_of_columns, read_truth_json};
 
 use crate::columns::Columns;
@@ -116,17 +120,36 @@ pub struct Compared {
     final_error_deg: f64,
     covered_90: f64,
     crps_mm: f64,
+    pit: [f64; PIT_BINS],
     unsolved: u64,
     collapses: u32,
     warnings: Vec<String>,
 }
 
-/// The page about the rows of a comparison.
+/// The page about the rows of a comparison, with players of the logs among `on`.
 #[pyfunction]
-pub fn comparison_page(rows: Vec<Given<Compared>>, particles: usize) -> PyResult<String> {
+pub fn comparison_page(
+    py: Python<'_>,
+    rows: Vec<Given<Compared>>,
+    on: Vec<Given<Arguments<'_>>>,
+    options: Given<RunArguments>,
+) -> PyResult<String> {
     let runs = rows.into_iter().map(|row| compared(row.0));
     let runs = runs.collect::<PyResult<Vec<_>>>()?;
-    Ok(stickslip_cli::comparison_page(&runs, particles))
+    let asked = options.0.options()?;
+    let folder = |on: &Arguments<'_>| {
+        Ok(ComparedFolder {
+            path: PathBuf::from(&on.name),
+            experiment: on.experiment()?,
+            occlusion: on.options.0.occlusion()?,
+            tracking: asked.tracking,
+        })
+    };
+    let folders = on.iter().map(|on| folder(&on.0));
+    let folders = folders.collect::<PyResult<Vec<_>>>()?;
+    let conditions = (asked.particles, asked.model);
+    let page = py.detach(|| stickslip_cli::comparison_page(&runs, conditions, &folders));
+    page.map_err(refused)
 }
 
 fn compared(row: Compared) -> PyResult<ComparedRun> {
@@ -143,6 +166,7 @@ fn compared(row: Compared) -> PyResult<ComparedRun> {
             final_error_deg: known(row.final_error_deg),
             covered_90: known(row.covered_90),
             crps_mm: known(row.crps_mm),
+            pit: known(row.crps_mm).map(|_| row.pit),
             unsolved: row.unsolved,
             collapses: row.collapses,
             ..ShownScores::default()

@@ -2,7 +2,7 @@
 
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use stickslip_evaluation::{Reference, Scores, score as score_against};
+use stickslip_evaluation::{PIT_BINS, Reference, Scores, score as score_against};
 use stickslip_formats::{Experiment, TruthFacts, estimate_of_columns};
 
 use crate::columns::Columns;
@@ -68,5 +68,6 @@ fn to_scores<'py>(py: Python<'py>, scores: &Scores) -> PyResult<Bound<'py, PyDic
     for (name, value) in named {
         dict.set_item(name, value.unwrap_or(f64::NAN))?;
     }
+    dict.set_item("pit", belief.pit.unwrap_or([f64::NAN; PIT_BINS]).to_vec())?;
     Ok(dict)
 }

@@ -80,7 +80,7 @@ impl Axis {
         let count = ((self.pixels[1] - self.pixels[0]).abs() / spacing).max(1.0);
         match self.scale {
             Scale::Linear => self.even_ticks(count),
-            Scale::Log { .. } => self.decade_ticks(),
+            Scale::Log { .. } => self.decade_ticks(count),
         }
     }
 
@@ -102,20 +102,22 @@ impl Axis {
             .collect()
     }
 
-    /// 1, 10, 100 with numbers; where those are few, 2 and 5 as well; the rest between them
-    /// without.
-    fn decade_ticks(&self) -> Vec<Tick> {
+    /// 1, 10, 100 with numbers, at least half as far apart as `count` even ones; where those are
+    /// few, 2 and 5 as well; the rest between them without.
+    fn decade_ticks(&self, count: f64) -> Vec<Tick> {
         let [low, high] = self.limits;
         let (first, last) = (
             libm::log10(low).floor() as i32,
             libm::log10(high).floor() as i32,
         );
         let few = last - first < 2;
+        let every = (libm::log10(high / low) / (2.0 * count)).ceil().max(1.0) as i32;
         let all = (first..=last.min(first + 30))
             .flat_map(|decade| (1..10).map(move |digit| (decade, digit)));
         let ticks = all.map(|(decade, digit)| {
             let value = f64::from(digit) * libm::exp10(f64::from(decade));
-            let named = digit == 1 || few && (digit == 2 || digit == 5);
+            let named =
+                digit == 1 && decade.rem_euclid(every) == 0 || few && (digit == 2 || digit == 5);
             Tick {
                 value,
                 label: if named {
@@ -160,6 +162,17 @@ mod tests {
             .map(|tick| tick.label)
             .filter(|label| !label.is_empty())
             .collect()
+    }
+
+    #[test]
+    fn decades_that_are_too_close_have_a_number_at_every_other() {
+        let axis = |width: f64| Axis {
+            scale: Scale::Log { floor: 0.01 },
+            limits: [0.01, 1e5],
+            pixels: [0.0, width],
+        };
+        assert_eq!(labels(&axis(600.0), 80.0).len(), 8);
+        assert_eq!(labels(&axis(270.0), 80.0), ["0.01", "1", "100", "10000"]);
     }
 
     #[test]

@@ -13,6 +13,7 @@ mod curves;
 mod drawing;
 mod experiment_figures;
 mod font;
+mod histogram;
 mod intervals;
 mod legend;
 #[cfg(feature = "png")]
@@ -46,6 +47,7 @@ pub use colour::{Colour, Line};
 pub use curves::{FRICTION_PARAMETERS, FrictionParameter, PoseError, friction_panels, pose_errors};
 pub use drawing::Drawing;
 pub use experiment_figures::Figure;
+pub use histogram::{Histogram, Histograms};
 pub use live_page::live_page;
 pub use marks::Mark;
 pub use outline::Outline;

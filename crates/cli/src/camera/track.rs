@@ -203,7 +203,9 @@ fn with_sensors(args: &TrackArgs, log: Log) -> Result<(Log, Verdict)> {
     let Some(path) = &args.sensors else {
         return Ok((log, Verdict::Done));
     };
-    let (sensors, verdict) = LogFiles::find(path)?.read(&BagOptions::default())?;
+    let files = LogFiles::find(path)?;
+    let (sensors, warnings) = files.read(&BagOptions::default())?;
+    let verdict = files.told(&warnings);
     let differ = || {
         (0..log.len().max(sensors.len()))
             .find(|row| differs(log.time.get(*row), sensors.time.get(*row)))

@@ -2,8 +2,10 @@
 
 use std::path::Path;
 
-use stickslip_evaluation::{PairedDifference, Variant, quantile};
-use stickslip_report::{Block, Colour, Scale, StripGroup, StripLane, StripPlot};
+use stickslip_evaluation::{PIT_BINS, PairedDifference, Variant, quantile};
+use stickslip_report::{
+    Block, Colour, Histogram, Histograms, Scale, StripGroup, StripLane, StripPlot,
+};
 
 use super::results::{Comparison, FolderResult, ShownScores};
 
@@ -16,7 +18,13 @@ const FLOOR: f64 = 0.01;
 /// Coverage of intervals that are as wide as they should be (%).
 const NOMINAL: f64 = 90.0;
 
+/// Caption of the histograms.
+const PIT: &str = "Place of the reference in the belief (probability integral transform, PIT): 0 is its lower end, 0.5 its median, 1 its upper end, \
+     over x, y and θ of the rows while the camera is off. Each log counts the same. A calibrated belief fills every tenth with 10 % (dashed). \
+     High outer bars: overconfident. High middle bars: too cautious. A slope: biased.";
+
 /// Errors, ratios to the particle filter's errors, and coverage: a dot per log, a lane per method.
+/// The place of the reference in the belief: a histogram per method.
 pub fn figures(comparison: &Comparison) -> Vec<Block> {
     let folders = &comparison.folders;
     if folders.len() < FEWEST {
@@ -79,9 +87,34 @@ pub fn figures(comparison: &Comparison) -> Vec<Block> {
     ];
     let plots = [errors, ratios, coverage].into_iter().zip(captions);
     let drawn = plots.filter(|(plot, _)| !plot.groups.is_empty());
+    let places = histograms(folders, methods.iter().map(|(variant, _)| *variant));
     drawn
         .map(|(plot, caption)| Block::Figure(plot.drawing(), caption.to_owned()))
+        .chain(places.map(|places| Block::Figure(places.drawing(), PIT.to_owned())))
         .collect()
+}
+
+/// Mean over the logs of each method's histogram; `None` where no method has a belief.
+fn histograms(
+    folders: &[FolderResult],
+    methods: impl Iterator<Item = Variant>,
+) -> Option<Histograms> {
+    let histogram = |variant: Variant| {
+        let scores = folders.iter().filter_map(|folder| folder.scores(variant));
+        let shares = ShownScores::mean(&scores.collect::<Vec<_>>()).pit?;
+        Some(Histogram {
+            name: variant.title().to_owned(),
+            colour: Colour::of(variant),
+            bars: shares.map(|share| 100.0 * share).to_vec(),
+        })
+    };
+    let all: Vec<Histogram> = methods.filter_map(histogram).collect();
+    (!all.is_empty()).then(|| Histograms {
+        x_label: "place in the belief".to_owned(),
+        y_label: "rows (%)".to_owned(),
+        level: 100.0 / PIT_BINS as f64,
+        all,
+    })
 }
 
 /// The last part of a folder's path.

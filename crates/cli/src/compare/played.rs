@@ -16,8 +16,8 @@ use crate::since_start::since_start;
 /// Experiments with the largest errors that are played back.
 const WORST: usize = 3;
 
-/// Experiments by their folders: the ones on which the particle filter fares worst, the worst
-/// first, and the one on which it fares as on the median one.
+/// Those of the experiments in `folders`, by their paths: the ones on which the particle filter
+/// fares worst, the worst first, and the one on which it fares as on the median one.
 pub fn played(
     comparison: &Comparison,
     model: FilterModel,
@@ -30,9 +30,11 @@ pub fn played(
         .into_iter()
         .enumerate()
         .filter(|(rank, _)| *rank < WORST || *rank == median);
-    let section = |(rank, result): (usize, &FolderResult)| {
+    let found = chosen.filter_map(|(rank, result)| {
         let path = |folder: &&Folder| folder.path.display().to_string() == result.folder;
-        let folder = folders.iter().find(path).expect("a result has its folder");
+        Some((rank, result, folders.iter().find(path)?))
+    });
+    let section = |(rank, result, folder): (usize, &FolderResult, &Folder)| {
         let section = section(folder, model, comparison.particles)?;
         let place = format!(
             "number {} of {count} by the particle filter's pose RMSE, seed 0",
@@ -41,7 +43,7 @@ pub fn played(
         let title = format!("{}: {place}", section.title);
         Ok((result.folder.clone(), Section { title, ..section }))
     };
-    chosen.map(section).collect()
+    found.map(section).collect()
 }
 
 /// Every variant with the first seed.

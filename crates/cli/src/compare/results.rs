@@ -6,7 +6,7 @@ use std::path::Path;
 use anyhow::Result;
 use serde::Serialize;
 use stickslip::diagnosis::{assumed_stall_force, collapsed, misread};
-use stickslip_evaluation::{ScoredRun, Variant, quantile};
+use stickslip_evaluation::{PIT_BINS, ScoredRun, Variant, quantile};
 use stickslip_formats::Experiment;
 
 use super::best_baseline::BestBaseline;
@@ -35,6 +35,9 @@ pub struct ShownScores {
     pub covered_90_final: Option<f64>,
     /// Continuous ranked probability score over the rows of `wmse_mm` (mm).
     pub crps_mm: Option<f64>,
+    /// Histogram of the probability integral transform over those rows; a mean wherever it is over
+    /// several runs or folders.
+    pub pit: Option<[f64; PIT_BINS]>,
     /// Unsolved particle steps, summed over seeds.
     pub unsolved: u64,
     /// Rows at which no particle explained the camera, summed over seeds.
@@ -205,6 +208,7 @@ impl ShownScores {
             covered_90_seen: scores.belief_seen.covered,
             covered_90_final: scores.belief_final.covered,
             crps_mm: belief.crps_mm,
+            pit: belief.pit,
             unsolved: run.unsolved,
             collapses: run.collapses,
             seen: run.seen(),
@@ -219,6 +223,7 @@ impl ShownScores {
             covered_90_seen: mean.covered_90_seen,
             covered_90_final: mean.covered_90_final,
             crps_mm: mean.crps_mm,
+            pit: mean.pit,
             ..Self::quantile(of, 0.5)
         }
     }
@@ -231,10 +236,18 @@ impl ShownScores {
     /// The mean of each score, and all unsolved steps and collapses.
     pub fn mean(of: &[Self]) -> Self {
         let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
-        Self::each(of, |values| (!values.is_empty()).then(|| mean(values)))
+        let pit: Vec<_> = of.iter().filter_map(|scores| scores.pit).collect();
+        let tenth = |k: usize| {
+            let shares = pit.iter().map(|shares| shares[k]);
+            mean(&shares.collect::<Vec<_>>())
+        };
+        Self {
+            pit: (!pit.is_empty()).then(|| std::array::from_fn(tenth)),
+            ..Self::each(of, |values| (!values.is_empty()).then(|| mean(values)))
+        }
     }
 
-    /// Applies `summarise` to each score, and sums all unsolved steps and collapses.
+    /// Applies `summarise` to each score but the histogram, and sums unsolved steps and collapses.
     fn each(of: &[Self], summarise: impl Fn(&[f64]) -> Option<f64>) -> Self {
         let each = |score: fn(&Self) -> Option<f64>| {
             summarise(&of.iter().filter_map(score).collect::<Vec<_>>())
@@ -249,6 +262,7 @@ impl ShownScores {
             covered_90_seen: each(|m| m.covered_90_seen),
             covered_90_final: each(|m| m.covered_90_final),
             crps_mm: each(|m| m.crps_mm),
+            pit: None,
             unsolved: of.iter().map(|m| m.unsolved).sum(),
             collapses: of.iter().map(|m| m.collapses).sum(),
             seen: of.iter().map(|m| m.seen).sum(),

@@ -5,11 +5,12 @@ use std::sync::Arc;
 
 use anyhow::Result;
 use serde::Deserialize;
-use stickslip_formats::{BagOptions, Experiment, TruthFacts, read_log, read_scene};
+use stickslip_formats::{BagOptions, Experiment, LogWarning, TruthFacts, read_log, read_scene};
 
 use super::SCENES;
-use crate::experiment::{read_folder, text_of};
+use crate::experiment::{read_quietly, text_of};
 use crate::failure::hinted;
+use crate::log_files::{LogFiles, log_path};
 use crate::since_start::since_start;
 
 /// Where a log comes from.
@@ -31,6 +32,8 @@ pub struct Opened {
     pub scene: String,
     /// Scene, log, and the truth where it is known.
     pub experiment: Experiment,
+    /// Warnings about parts of the log that were lost in reading.
+    pub warnings: Vec<String>,
     /// Times of the rows as pages show them (s).
     pub times: Vec<f64>,
 }
@@ -49,28 +52,33 @@ impl Source {
             Self::Dropped(opened) => Ok(opened.clone()),
             Self::Folder(folder) => {
                 let scene = SCENES.of(folder);
-                let (experiment, _) = read_folder(folder, &scene, &BagOptions::default())?;
+                let log = log_path(folder);
+                let files = LogFiles::find(&log)?;
+                let topics = BagOptions::default();
+                let (experiment, warnings) = read_quietly(&scene, (&log, &files), &topics, None)?;
                 let given = [folder, &scene].map(|path| path.display().to_string());
                 let text = text_of(&scene, "scene")?;
-                Ok(Arc::new(Opened::new(
-                    name.to_owned(),
-                    given,
-                    text,
-                    experiment,
-                )))
+                let read = (experiment, files.warnings(&warnings));
+                Ok(Arc::new(Opened::new(name.to_owned(), given, text, read)))
             }
         }
     }
 }
 
 impl Opened {
-    fn new(name: String, given: [String; 2], scene: String, experiment: Experiment) -> Self {
+    fn new(
+        name: String,
+        given: [String; 2],
+        scene: String,
+        (experiment, warnings): (Experiment, Vec<String>),
+    ) -> Self {
         let times = since_start(&experiment, Vec::new()).0.log.time;
         Self {
             name,
             given,
             scene,
             experiment,
+            warnings,
             times,
         }
     }
@@ -96,13 +104,16 @@ impl Opened {
             return Err(hinted(found, help));
         };
         let setup = read_scene(&scene.text, &scene.name)?;
-        let (table, _) = read_log(log.text.as_bytes(), &log.name)?;
+        let (table, warnings) = read_log(log.text.as_bytes(), &log.name)?;
         let experiment = Experiment::new(setup, table, None, TruthFacts::default())?;
         Ok(Self::new(
             format!("{number}: {}", log.name),
             [log.name.clone(), scene.name.clone()],
             scene.text.clone(),
-            experiment,
+            (
+                experiment,
+                warnings.iter().map(LogWarning::to_string).collect(),
+            ),
         ))
     }
 

@@ -141,12 +141,27 @@ impl<'a> Settings<'a> {
         Ok(settings)
     }
 
+    /// Value of a slider; 1 where it is absent.
+    fn value(&self, key: &str) -> f64 {
+        let slider = self.sliders.iter().find(|slider| slider.key == key);
+        slider.map_or(1.0, |slider| slider.value)
+    }
+
+    /// Refuses a camera that is on again before it is off.
+    pub fn check_order(&self) -> Result<()> {
+        let [off, on] = ["off_from", "off_to"].map(|key| self.value(key));
+        if on < off {
+            let found = format!("the camera is off from {off} s, and on again before, at {on} s");
+            let rule =
+                "move `camera on again at` behind `camera off from`; equal times: no occlusion";
+            return Err(hinted(found, rule));
+        }
+        Ok(())
+    }
+
     /// Options of a run.
     pub fn options(&self) -> RunOptions {
-        let value = |key: &str| {
-            let slider = self.sliders.iter().find(|slider| slider.key == key);
-            slider.map_or(1.0, |slider| slider.value)
-        };
+        let value = |key: &str| self.value(key);
         let times = &self.opened.times;
         let row = |key: &str| times.partition_point(|row| *row < value(key));
         let [from, to] = [row("off_from"), row("off_to")];

@@ -60,6 +60,9 @@ fn compare_goes_on_after_a_broken_folder_and_exits_with_3() {
     assert!(overall["mean"]["covered_90"].is_null());
     let covered = report["folders"][0]["methods"][6]["covered_90"].as_f64();
     assert!(covered.is_some_and(|share| (0.0..=1.0).contains(&share)));
+    let pit = report["sets"][0]["methods"][6]["mean"]["pit"].as_array();
+    let shares = pit.unwrap().iter().map(|share| share.as_f64().unwrap());
+    assert!((shares.sum::<f64>() - 1.0).abs() < 1e-12);
     assert!(
         report["touch_gain"].is_null(),
         "one folder has no standard error"

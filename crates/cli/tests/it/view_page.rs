@@ -122,6 +122,9 @@ fn names_lead_out_of_no_list_and_wrong_files_are_told() {
     }
     let far = json!({"log": log, "changed": {"particles": 1e9}});
     assert_refused(session.post("run", &far), "help: choose from 50 to 5000");
+    let early = json!({"log": log, "changed": {"off_from": 1.5, "off_to": 1.0}});
+    let words = "the camera is off from 1.5 s, and on again before, at 1 s";
+    assert_refused(session.post("run", &early), words);
     let refused = stickslip().args(["view", "nowhere"]).output().unwrap();
     let told = String::from_utf8(refused.stderr).unwrap();
     assert!(
@@ -164,6 +167,38 @@ fn a_run_with_changes_is_that_of_filter_with_the_saved_scene() {
     for key in ["wmse_occluded_mm", "wmse_moving_mm", "final_error_mm"] {
         let cell = format!(">{:.3}</td>", own[key].as_f64().unwrap());
         assert!(scores.contains(&cell), "{key}: {own:#}");
+    }
+}
+
+#[test]
+fn what_is_lost_in_reading_is_on_the_page() {
+    let case = Experiment::copy(SLIDE, "view_page/lost");
+    let (session, _) = page_of(&case);
+    let text = |file: &str| std::fs::read_to_string(case.folder.join(file)).unwrap();
+    let lines = text("log.csv");
+    let wider = lines.lines().enumerate().map(|(row, line)| {
+        let more = if row == 0 { "comment" } else { "1" };
+        format!("{line},{more}\n")
+    });
+    let files = [
+        ("scene.toml", text("scene.toml")),
+        ("log.csv", wider.collect()),
+    ];
+    let files = files.map(|(name, text)| json!({ "name": name, "text": text }));
+    let name = session.post("drop", &json!({ "files": files })).unwrap();
+    let name: String = serde_json::from_str(&name).unwrap();
+    for what in ["check", "open"] {
+        let found = session.post(what, &json!({ "log": name })).unwrap();
+        let found: Value = serde_json::from_str(&found).unwrap();
+        let first = &found["findings"][0];
+        assert_eq!(
+            (&first["severity"], &first["subject"]),
+            (&json!("warning"), &json!("reading"))
+        );
+        assert!(
+            first["found"].as_str().unwrap().contains("comment"),
+            "{first}"
+        );
     }
 }
 
