@@ -1,6 +1,6 @@
 //! Poses of all bodies while the shutter is open: [`Exposure`], [`BodyPoses`].
 
-use stickslip_dynamics::Pose;
+use stickslip_dynamics::{MOST_FINGERS, Pose};
 
 use crate::prism::Parent;
 
@@ -11,7 +11,9 @@ pub struct BodyPoses {
     pub object: Option<Pose>,
     /// The pusher.
     pub pusher: Option<Pose>,
-    /// The hand.
+    /// The other fingers of a gripper.
+    pub other_fingers: [Option<Pose>; MOST_FINGERS - 1],
+    /// The hand that gets between camera and object.
     pub hand: Option<Pose>,
 }
 
@@ -35,12 +37,14 @@ impl Exposure {
 
     /// Poses of a parent at start and end; `None` unless it is there for both.
     pub(crate) fn poses(&self, parent: Parent) -> Option<[Pose; 2]> {
-        let both = |of: fn(&BodyPoses) -> Option<Pose>| Some([of(&self.start)?, of(&self.end)?]);
+        let both =
+            |of: &dyn Fn(&BodyPoses) -> Option<Pose>| Some([of(&self.start)?, of(&self.end)?]);
         match parent {
             Parent::Table => Some([Pose::default(); 2]),
-            Parent::Object => both(|poses| poses.object),
-            Parent::Pusher => both(|poses| poses.pusher),
-            Parent::Hand => both(|poses| poses.hand),
+            Parent::Object => both(&|poses| poses.object),
+            Parent::Pusher => both(&|poses| poses.pusher),
+            Parent::Finger(k) => both(&|poses| poses.other_fingers[k]),
+            Parent::Hand => both(&|poses| poses.hand),
         }
     }
 }

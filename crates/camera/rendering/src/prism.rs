@@ -12,6 +12,8 @@ pub(crate) enum Parent {
     Table,
     Object,
     Pusher,
+    /// Of a hand's fingers besides the pusher, from 0.
+    Finger(usize),
     Hand,
 }
 

@@ -2,11 +2,12 @@
 
 use std::f64::consts::{SQRT_2, TAU};
 
-use stickslip_dynamics::{Pose, Scene, Shape};
+use stickslip_dynamics::{MOST_FINGERS, Pose, Scene, Shape};
 
 use crate::appearance::{Appearance, TagMount};
+use crate::exposure::BodyPoses;
 
-/// Poses of object and pusher, one entry per frame.
+/// Poses of object and fingers, one entry per frame.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RecordedMotion {
     /// Middle of the exposure (s), strictly rising.
@@ -15,6 +16,8 @@ pub struct RecordedMotion {
     pub object: Vec<Pose>,
     /// The pusher; `None` is out of the picture.
     pub pusher: Vec<Option<Pose>>,
+    /// Poses of each other finger of a gripper.
+    pub other_fingers: Vec<Vec<Option<Pose>>>,
 }
 
 impl RecordedMotion {
@@ -27,6 +30,12 @@ impl RecordedMotion {
         };
         let object = moving(&scene.object.shape, &appearance.object_tag);
         let pusher = moving(&scene.pusher.fingers[0], &appearance.pusher_tag);
+        let shapes = scene.pusher.fingers[1..].iter();
+        let fingers = self.other_fingers.iter().zip(shapes);
+        let fingers = fingers.flat_map(|(poses, shape)| {
+            let finger = moving(shape, &None);
+            poses.iter().flatten().map(finger)
+        });
         let fixels = scene
             .fixels
             .iter()
@@ -36,6 +45,7 @@ impl RecordedMotion {
             .iter()
             .map(object)
             .chain(self.pusher.iter().flatten().map(pusher))
+            .chain(fingers)
             .chain(fixels);
         let empty = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
         discs.fold(empty, |[low, high], (x, y, r)| {
@@ -55,9 +65,9 @@ impl RecordedMotion {
         })
     }
 
-    /// Object and pusher at a time: linear between frames, at rest before the first and after the
+    /// Object and fingers at a time: linear between frames, at rest before the first and after the
     /// last.
-    pub(crate) fn at(&self, time: f64) -> (Option<Pose>, Option<Pose>) {
+    pub(crate) fn at(&self, time: f64) -> BodyPoses {
         let later = self
             .time
             .partition_point(|t| *t < time)
@@ -69,13 +79,20 @@ impl RecordedMotion {
         } else {
             0.0
         };
-        let pusher = self.pusher[earlier]
-            .zip(self.pusher[later])
-            .map(|(a, b)| between(a, b, share));
-        (
-            Some(between(self.object[earlier], self.object[later], share)),
-            pusher,
-        )
+        let finger = |poses: &[Option<Pose>]| {
+            let ends = poses[earlier].zip(poses[later]);
+            ends.map(|(from, to)| between(from, to, share))
+        };
+        let mut other_fingers = [None; MOST_FINGERS - 1];
+        for (to, poses) in other_fingers.iter_mut().zip(&self.other_fingers) {
+            *to = finger(poses);
+        }
+        BodyPoses {
+            object: Some(between(self.object[earlier], self.object[later], share)),
+            pusher: finger(&self.pusher),
+            other_fingers,
+            hand: None,
+        }
     }
 }
 
@@ -107,9 +124,11 @@ mod tests {
             time: vec![0.0, 1.0],
             object: vec![at(3.1), at(-3.1)],
             pusher: vec![Some(at(-3.0)), Some(at(3.0))],
+            other_fingers: vec![vec![Some(at(3.0)), Some(at(-3.0))]],
         };
-        let (object, pusher) = motion.at(0.5);
-        let turns = [object, pusher].map(|pose| pose.unwrap().theta.abs() - TAU / 2.0);
+        let poses = motion.at(0.5);
+        let bodies = [poses.object, poses.pusher, poses.other_fingers[0]];
+        let turns = bodies.map(|pose| pose.unwrap().theta.abs() - TAU / 2.0);
         assert!(turns.iter().all(|off| off.abs() < 1e-12), "{turns:?}");
     }
 }

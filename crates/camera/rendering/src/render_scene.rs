@@ -57,6 +57,10 @@ impl RenderScene {
             appearance.pusher_height,
             PUSHER,
         ));
+        for (k, finger) in scene.pusher.fingers[1..].iter().enumerate() {
+            let height = appearance.pusher_height;
+            prisms.extend(upright(Parent::Finger(k), finger, height, PUSHER));
+        }
         for fixel in &scene.fixels {
             let parts = upright(Parent::Table, &fixel.shape, appearance.fixel_height, FIXEL);
             prisms.extend(parts.into_iter().map(|prism| Prism {

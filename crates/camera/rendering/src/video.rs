@@ -52,12 +52,9 @@ impl Video<'_> {
         let shown = self.settings.grabber.delivered(index as u64);
         let time = self.motion.time[shown as usize];
         let poses = |time: f64| {
-            let (object, pusher) = self.motion.at(time);
-            BodyPoses {
-                object,
-                pusher,
-                hand: object.and_then(|object| self.hand(time, object)),
-            }
+            let poses = self.motion.at(time);
+            let hand = poses.object.and_then(|object| self.hand(time, object));
+            BodyPoses { hand, ..poses }
         };
         let half = self.settings.exposure / 2.0;
         let exposure = Exposure {

@@ -198,6 +198,7 @@ fn motion() -> RecordedMotion {
             .map(|t| Some(Pose::new(0.03 * t - 0.035, 0.01, 0.0)))
             .collect(),
         time,
+        ..RecordedMotion::default()
     }
 }
 

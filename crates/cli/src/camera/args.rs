@@ -58,7 +58,8 @@ pub struct TrackArgs {
     /// Frames per second of images without frames.csv, in the order of names
     #[arg(long, value_name = "HZ", value_parser = positive)]
     pub rate: Option<f64>,
-    /// Log with touch and force (CSV or MCAP), one row per frame at the frame's time
+    /// Log (CSV or MCAP) with touch, force and poses of a hand's other fingers, one row per frame
+    /// at its time
     #[arg(long, value_name = "LOG")]
     pub sensors: Option<PathBuf>,
     /// Folder for log.csv, log.mcap and poses.csv (with covariances)

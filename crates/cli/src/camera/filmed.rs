@@ -142,6 +142,7 @@ fn motion(replicate: &Replicate) -> RecordedMotion {
         time: truth.time.clone(),
         object: truth.pose.clone(),
         pusher,
+        other_fingers: Vec::new(),
     }
 }
 

@@ -7,7 +7,6 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Result;
 use rayon::prelude::*;
-use stickslip::dynamics::Scene;
 use stickslip_evaluation::Reference;
 use stickslip_formats::{BagOptions, Experiment, FrameList, write_frames};
 use stickslip_rendering::{
@@ -34,7 +33,6 @@ pub fn render(args: &RenderArgs) -> Result<Verdict> {
         &BagOptions::default(),
     )?;
     let scene = &experiment.setup.scene;
-    refuse_hand(scene)?;
     let recorded = recorded(args, &experiment)?;
     let optics = Optics {
         blur: args.blur,
@@ -82,21 +80,7 @@ pub fn render(args: &RenderArgs) -> Result<Verdict> {
     Ok(verdict)
 }
 
-/// Poses of object and pusher: the object's by the truth, else by the log.
-/// A video shows one pusher.
-fn refuse_hand(scene: &Scene) -> Result<()> {
-    match scene.pusher.fingers.len() {
-        1 => Ok(()),
-        fingers => Err(hinted(
-            format!(
-                "a video shows one pusher, and the scene has {}",
-                counted(fingers as u64 - 1, "[[finger]] table")
-            ),
-            "`filter --report` draws hands",
-        )),
-    }
-}
-
+/// Poses of object and fingers: the object's by the truth, else by the log.
 fn recorded(args: &RenderArgs, experiment: &Experiment) -> Result<RecordedMotion> {
     let reference = Reference::of(experiment).pose;
     let unknown = reference.iter().position(Option::is_none);
@@ -115,6 +99,7 @@ fn recorded(args: &RenderArgs, experiment: &Experiment) -> Result<RecordedMotion
         time: experiment.log.time.clone(),
         object: reference.into_iter().flatten().collect(),
         pusher: experiment.log.pusher.clone(),
+        other_fingers: experiment.log.other_fingers.clone(),
     })
 }
 

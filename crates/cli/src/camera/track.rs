@@ -227,6 +227,8 @@ fn with_sensors(args: &TrackArgs, log: Log) -> Result<(Log, Verdict)> {
         Log {
             tactile: sensors.tactile,
             force: sensors.force,
+            // they have no tags
+            other_fingers: sensors.other_fingers,
             ..log
         },
         verdict,

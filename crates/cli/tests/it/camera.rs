@@ -95,6 +95,68 @@ fn track_finds_what_was_rendered() {
     assert_eq!(report["repeated"].as_u64(), Some(repeated as u64));
 }
 
+/// A jaw about a disc: its second finger is in the picture and has no tag.
+const JAW: &str = "
+gravity = 9.81
+object  = { mass = 0.5, inertia = 2.25e-4, shape = [{ disc = { radius = 0.03 } }] }
+support = { friction = 0.3, tripod_radius = 0.02 }
+pusher  = { friction = 0.3, stall_force = 10.0, shape = [{ disc = { radius = 0.005 } }] }
+finger  = [{ start = [0.05, 0.0, 0.0], direction = 3.14159, shape = [{ disc = { radius = 0.005 } }] }]
+fixels  = { friction = 0.3 }
+camera  = { position_std = 3.0e-4, orientation_std = 5.0e-3 }
+start   = { object = [0.0, 0.0, 0.3], pusher = [-0.045, 0.0, 0.0], speed = 0.03, duration = 0.5 }
+";
+
+#[test]
+fn a_hand_is_filmed_and_its_other_fingers_come_from_the_log() {
+    let folder = empty_folder("camera/jaw");
+    fs::write(folder.join("given.toml"), JAW).unwrap();
+    let (case, out) = (folder.join("case"), folder.join("out"));
+    let scene = folder.join("given.toml");
+    let mut simulate = stickslip();
+    succeeds(simulate.arg("simulate").arg(scene).arg("--out").arg(&case));
+    let mut render = stickslip();
+    render
+        .arg("render")
+        .arg(&case)
+        .args(["--board-frames", "8"]);
+    succeeds(render.arg("--out").arg(&out));
+    succeeds(&mut calibrate(&out.join("board"), &out));
+
+    let sensors = case.join("log.csv");
+    let mut track = stickslip();
+    track.arg("track").arg(out.join("frames"));
+    track.arg("--calibration").arg(out.join("calibration.toml"));
+    track.arg("--tags").arg(out.join("tags.toml"));
+    track.arg("--sensors").arg(&sensors);
+    succeeds(track.arg("--out").arg(out.join("tracked")));
+    let (log, given, truth) = (
+        cells(&out.join("tracked/log.csv")),
+        cells(&sensors),
+        cells(&case.join("truth.csv")),
+    );
+    let column = |rows: &[Vec<String>], name: &str| {
+        let index = rows[0].iter().position(|cell| cell == name).expect(name);
+        let numbers = rows[1..].iter().map(|row| row[index].parse().ok());
+        numbers.collect::<Vec<Option<f64>>>()
+    };
+    assert_eq!(column(&log, "finger_1_x"), column(&given, "finger_1_x"));
+    // the film shows the object as it was, and the fingers as they were logged
+    let shown = [
+        ("object_x", column(&truth, "x")),
+        ("pusher_x", column(&given, "pusher_x")),
+    ];
+    for (name, shown) in shown {
+        let pairs = column(&log, name).into_iter().zip(shown);
+        let off = pairs.filter_map(|(found, is)| Some((found? - is?).abs()));
+        let off: Vec<f64> = off.collect();
+        assert!(
+            off.len() > 3 && off.iter().all(|off| *off < 0.2e-3),
+            "{name} {off:?}"
+        );
+    }
+}
+
 #[test]
 fn track_takes_any_folder_of_images_at_a_rate() {
     let (frames, out) = (two_frames("camera/rate"), RENDERED.join("rate"));

@@ -113,7 +113,7 @@ fn track_continues_angles() {
         let poses = BodyPoses {
             object: Some(turning(index)),
             pusher: Some(Pose::new(-0.05, 0.0, 0.0)),
-            hand: None,
+            ..BodyPoses::default()
         };
         RIG.renderer.frame(index.into(), &Exposure::at_rest(poses))
     };
@@ -300,6 +300,7 @@ fn motion(frames: u32) -> RecordedMotion {
             .map(|t| Some(Pose::new(0.03 * t - 0.035, 0.01, 0.0)))
             .collect(),
         time,
+        ..RecordedMotion::default()
     }
 }
 

@@ -154,7 +154,7 @@ impl Rig {
             BodyPoses {
                 object: Some(moved(object)),
                 pusher: Some(moved(pusher)),
-                hand: None,
+                ..BodyPoses::default()
             }
         };
         let frame = |(poses, index): (&[Pose; 2], u64)| {
