@@ -99,7 +99,8 @@ pub fn compare(args: &CompareArgs) -> Result<Verdict> {
 /// The page about runs that a caller made on these folders.
 pub fn page_of(
     runs: &[ComparedRun],
-    (particles, model): (usize, FilterModel),
+    particles: usize,
+    model: FilterModel,
     folders: &[Folder],
 ) -> Result<Report> {
     let comparison = Comparison::of_runs(runs, particles);

@@ -56,14 +56,15 @@ pub fn read_experiment(
     truth: Option<&Path>,
 ) -> Result<(Experiment, Verdict)> {
     let files = LogFiles::find(log)?;
-    let (experiment, warnings) = read_quietly(scene, (log, &files), topics, truth)?;
+    let (experiment, warnings) = read_quietly(scene, log, &files, topics, truth)?;
     Ok((experiment, files.told(&warnings)))
 }
 
 /// Reads the scene, the log of these files and the truth, with warnings about the log.
 pub fn read_quietly(
     scene: &Path,
-    (log, files): (&Path, &LogFiles),
+    log: &Path,
+    files: &LogFiles,
     topics: &BagOptions,
     truth: Option<&Path>,
 ) -> Result<(Experiment, Vec<LogWarning>)> {

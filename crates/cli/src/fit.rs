@@ -295,7 +295,9 @@ fn read_pushes(
         };
         Ok((push, verdict))
     };
-    let read: Vec<(Push, Verdict)> = folders.par_iter().map(read).collect::<Result<_>>()?;
+    // the first error in their order, whichever thread comes first
+    let read: Vec<Result<(Push, Verdict)>> = folders.par_iter().map(read).collect();
+    let read: Vec<(Push, Verdict)> = read.into_iter().collect::<Result<_>>()?;
     let mut verdicts = read.iter().map(|(_, verdict)| *verdict);
     let lost = verdicts.find(|verdict| *verdict != Verdict::Done);
     let pushes = read.into_iter().map(|(push, _)| push).collect();

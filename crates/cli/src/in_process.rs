@@ -105,10 +105,11 @@ pub fn run_player(experiment: &Experiment, scored: ScoredRun, occlusion: Occlusi
 /// A run fails; in words.
 pub fn comparison_page(
     runs: &[ComparedRun],
-    conditions: (usize, FilterModel),
+    particles: usize,
+    model: FilterModel,
     folders: &[ComparedFolder],
 ) -> Result<String, String> {
-    let page = compare::page_of(runs, conditions, folders);
+    let page = compare::page_of(runs, particles, model, folders);
     page.map(|page| page.to_html())
         .map_err(|error| words(&error))
 }

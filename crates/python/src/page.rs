@@ -147,8 +147,8 @@ pub fn comparison_page(
     };
     let folders = on.iter().map(|on| folder(&on.0));
     let folders = folders.collect::<PyResult<Vec<_>>>()?;
-    let conditions = (asked.particles, asked.model);
-    let page = py.detach(|| stickslip_cli::comparison_page(&runs, conditions, &folders));
+    let (particles, model) = (asked.particles, asked.model);
+    let page = py.detach(|| stickslip_cli::comparison_page(&runs, particles, model, &folders));
     page.map_err(refused)
 }
 

@@ -55,7 +55,7 @@ impl Source {
                 let log = log_path(folder);
                 let files = LogFiles::find(&log)?;
                 let topics = BagOptions::default();
-                let (experiment, warnings) = read_quietly(&scene, (&log, &files), &topics, None)?;
+                let (experiment, warnings) = read_quietly(&scene, &log, &files, &topics, None)?;
                 let given = [folder, &scene].map(|path| path.display().to_string());
                 let text = text_of(&scene, "scene")?;
                 let read = (experiment, files.warnings(&warnings));
