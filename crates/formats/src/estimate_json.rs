@@ -57,7 +57,7 @@ mod tests {
         let line = estimate_json(0.1, &row, &setup, None);
         let value: serde_json::Value = serde_json::from_str(&line).expect("JSON");
         let object = value.as_object().expect("an object");
-        assert_eq!(object.len(), 38 + 4 * setup.scene.others());
+        assert_eq!(object.len(), 39 + 4 * setup.scene.others());
         let pace = Pace {
             particles: 64,
             missed: 3,
