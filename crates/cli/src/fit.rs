@@ -200,7 +200,8 @@ pub fn page_of(
     pushes: &[Push],
     fit: &Fit,
     cross_validation: Option<&CrossValidation>,
-    (warnings, seed): (&[String], u64),
+    warnings: &[String],
+    seed: u64,
 ) -> Report {
     let result = FitResult {
         object: None,

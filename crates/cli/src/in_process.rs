@@ -122,7 +122,7 @@ pub fn fit_page(
     warnings: &[String],
     seed: u64,
 ) -> String {
-    fit::page_of(pushes, fit, cross_validation, (warnings, seed)).to_html()
+    fit::page_of(pushes, fit, cross_validation, warnings, seed).to_html()
 }
 
 /// The compared method of a name, as in the JSON of `stickslip compare`.

@@ -1,5 +1,7 @@
 //! One lane of an assembled chunk as a problem in SI units, for oracles and observers.
 
+use stickslip_lanes::Lanes;
+
 use crate::assembly::{Assembly, Row, Scaling};
 use crate::input::Body;
 use crate::ncp::problem::{ContactPoint, Foot, StepProblem};
@@ -52,15 +54,20 @@ impl<const W: usize> Assembly<W> {
         lane: usize,
         visit: &mut dyn FnMut(&SolvedContact),
     ) {
+        let one = |x: Lanes<W>| Lanes([x.0[lane]]);
+        let (v, pusher_yield) = (p.v.map(one), one(p.pusher_yield));
         let numbers = ncp.contacts.iter().zip(&p.normal);
         for (row, (numbers, impulse)) in self.rows.iter().zip(numbers) {
             if row.present.lane(lane) {
-                let gap = numbers.gap_velocity(&p.v, p.pusher_yield) * self.scaling.h;
+                // the lane alone: a whole chunk costs as many times, contact by contact
+                let mut alone = ContactRow::<1>::OPEN;
+                numbers.copy_lane(lane, &mut alone, 0);
+                let gap = alone.gap_velocity(&v, pusher_yield).0[0] * self.scaling.h;
                 visit(&SolvedContact {
                     body: row.body,
                     point: self.contact_point(row, numbers, lane),
                     impulse: impulse.0[lane] * self.scaling.mass,
-                    gap: gap.0[lane],
+                    gap,
                 });
             }
         }

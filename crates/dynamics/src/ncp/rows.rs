@@ -153,7 +153,12 @@ impl<const W: usize> ContactRow<W> {
 
     /// Copies one lane into lane `slot` of `to`.
     #[inline(always)]
-    fn copy_lane<const V: usize>(&self, lane: usize, to: &mut ContactRow<V>, slot: usize) {
+    pub(crate) fn copy_lane<const V: usize>(
+        &self,
+        lane: usize,
+        to: &mut ContactRow<V>,
+        slot: usize,
+    ) {
         for k in 0..3 {
             to.n[k].0[slot] = self.n[k].0[lane];
             to.t[k].0[slot] = self.t[k].0[lane];

@@ -13,12 +13,16 @@ impl Propagation {
     /// Sets the flag of the particles whose contacts are a frictional form closure. Bodies up to
     /// `touch_gap` may touch: their places are not exact, and a closure is no less one for a gap
     /// that a yielding drive closes.
+    #[inline(always)]
     pub(crate) fn store_held(
         &mut self,
         Transition { setup, columns, .. }: &Transition<'_>,
         plan: &StepPlan,
         block: &mut BlockMut<'_>,
     ) {
+        if columns.others() == 0 {
+            return; // one body alone holds nothing
+        }
         let Self { work, cones, .. } = self;
         let rho = setup.scene.object.gyration_radius();
         let near = match columns.model() {
@@ -26,7 +30,6 @@ impl Propagation {
             FilterModel::Paper => plan.touching,
         };
         for chunk in 0..block.len().div_ceil(LANES) {
-            // one body alone holds nothing
             let (mut any, mut held) = (Mask::splat(false), Mask::splat(false));
             for k in 0..=columns.others() {
                 let gap = work.gaps(chunk, setup.scene.contact(k));

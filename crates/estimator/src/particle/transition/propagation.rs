@@ -156,9 +156,11 @@ impl Propagation {
         on_widest(
             level,
             #[inline(always)]
-            || self.store(transition, plan, block),
+            || {
+                self.store(transition, plan, block);
+                self.store_held(transition, plan, block);
+            },
         );
-        self.store_held(transition, plan, block);
         if model == FilterModel::Robust {
             self.weigh_step(transition, plan, block);
         }
